@@ -1,0 +1,3 @@
+//! Build, write, map and query Simplified Incidence Graphs.
+
+pub mod soup;

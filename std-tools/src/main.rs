@@ -1,0 +1,3 @@
+//! The command `sig`.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Oracles: slow, obvious implementations of the definitions.
