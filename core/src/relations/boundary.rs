@@ -24,7 +24,7 @@ impl<'a, I: Index> Complex<'a, I> {
     ///
     /// Cost: the binomial number of faces, each about one read; constant for given p and q. Source: Algorithm 4.
     #[must_use]
-    pub fn boundary(&self, simplex: SimplexId, dim: Dim) -> Boundary<'a, I> {
+    pub fn boundary(&self, simplex: SimplexId, dim: Dim) -> Boundary<'_, I> {
         match self.dim_of(simplex) {
             Some(own) if dim < own => self.subfaces(own, simplex.index(), all_positions(own), own - dim),
             _ => self.subfaces(0, simplex.index(), 0, 1),
@@ -33,10 +33,10 @@ impl<'a, I: Index> Complex<'a, I> {
 
     /// The faces of a simplex of dimension `dim` that omit exactly `omitted` of the vertex positions in `deletable`, in
     /// the order of their ids.
-    pub(crate) fn subfaces(&self, dim: Dim, simplex: usize, deletable: u32, omitted: usize) -> Boundary<'a, I> {
+    pub(crate) fn subfaces(&self, dim: Dim, simplex: usize, deletable: u32, omitted: usize) -> Boundary<'_, I> {
         let free = deletable.count_ones() as usize;
         Boundary {
-            complex: *self,
+            complex: self,
             dim,
             simplex,
             deletable,
@@ -91,7 +91,7 @@ struct Step {
 /// combination to the first.
 #[derive(Clone, Debug)]
 pub struct Boundary<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     dim: Dim,
     simplex: usize,
     deletable: u32,

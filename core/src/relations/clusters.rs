@@ -19,14 +19,14 @@ pub struct Cluster {
     pub representative: SimplexId,
 }
 
-impl<'a, I: Index> Complex<'a, I> {
+impl<I: Index> Complex<'_, I> {
     /// The clusters in the restricted star of a simplex, by decreasing dimension, then increasing representative; none
     /// for a top simplex.
     ///
     /// Cost: Σ_g κ_g(σ) + 1 reads in a row.
     #[must_use]
-    pub fn clusters(&self, simplex: SimplexId) -> Clusters<'a, I> {
-        Clusters { complex: *self, entries: self.partial_coboundary(simplex) }
+    pub fn clusters(&self, simplex: SimplexId) -> Clusters<'_, I> {
+        Clusters { complex: self, entries: self.partial_coboundary(simplex) }
     }
 
     /// The simplices of the cluster around `simplex` to which `representative`, any of its simplices, belongs; empty if
@@ -103,7 +103,7 @@ impl<'a, I: Index> Complex<'a, I> {
 /// The clusters around a simplex: see [`Complex::clusters`].
 #[derive(Clone, Debug)]
 pub struct Clusters<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     entries: PartialCoboundary<'a, I>,
 }
 
