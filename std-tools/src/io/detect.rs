@@ -42,8 +42,12 @@ fn first_word(line: &[u8]) -> &[u8] {
 fn certain(head: &[u8], length: Option<u64>) -> Option<Format> {
     let line = first_line(head);
     let word = first_word(line);
-    if off::is_keyword(word) {
+    if word == b"ply" && line == word {
+        Some(Format::Ply)
+    } else if off::is_keyword(word) {
         Some(Format::Off)
+    } else if line.starts_with(b"$") {
+        Some(Format::Msh)
     } else if stl::is_binary(head, length) || stl::is_text(head) {
         Some(Format::Stl)
     } else {

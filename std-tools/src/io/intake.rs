@@ -109,6 +109,11 @@ impl Intake {
         self.simplices[dim].extend_from_slice(vertices);
     }
 
+    /// The vertex numbers of all simplices, with repetitions.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = u32> {
+        self.simplices.iter().flatten().copied()
+    }
+
     /// Gives every vertex number `v` of the simplices the number `renumbered[v]`.
     pub(super) fn renumber(&mut self, renumbered: &[u32]) {
         for vertex in self.simplices.iter_mut().flatten() {

@@ -37,14 +37,15 @@ impl LabelTable {
 
     /// The number of a label, the next one if it is new; `None` if there is no next one.
     pub(super) fn number(&mut self, label: &str) -> Option<u32> {
-        match canonical(label) {
-            Some(integer) if matches!(self, Self::Integers { .. }) => self.number_integer(integer),
+        match (canonical(label), &self) {
+            (Some(integer), Self::Integers { .. }) => self.number_integer(integer),
             _ => self.number_token(label),
         }
     }
 
-    fn number_integer(&mut self, integer: u64) -> Option<u32> {
-        let Self::Integers { dense, sparse, labels } = self else { return None };
+    /// The number of the label that spells this integer.
+    pub(super) fn number_integer(&mut self, integer: u64) -> Option<u32> {
+        let Self::Integers { dense, sparse, labels } = self else { return self.number_token(&integer.to_string()) };
         let slot = match usize::try_from(integer) {
             Ok(at) if integer < DENSE => {
                 if at >= dense.len() {

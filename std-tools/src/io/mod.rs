@@ -12,8 +12,11 @@ mod detect;
 mod error;
 mod intake;
 mod labels;
+mod merge;
+mod msh;
 mod obj;
 mod off;
+mod ply;
 mod report;
 mod simplex_list;
 mod source;
@@ -26,6 +29,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use error::{ErrorKind, Position, ReadError};
+pub use merge::{MergeError, MergeReport, Renumbered, merge};
 pub use report::{Ignored, ReadReport};
 
 use crate::soup::Soup;
@@ -40,15 +44,19 @@ pub enum Format {
     Off,
     /// Wavefront OBJ.
     Obj,
+    /// Stanford PLY, in text and both binary byte orders.
+    Ply,
     /// STL, in text and binary.
     Stl,
+    /// Gmsh's MSH 2.2 and 4.1, in text and binary.
+    Msh,
     /// One simplex a line, or lists of lists in brackets.
     SimplexList,
 }
 
 impl Format {
     /// All formats, in the order in which help texts list them.
-    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Stl, Self::SimplexList];
+    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Ply, Self::Stl, Self::Msh, Self::SimplexList];
 
     /// The name of the format on a command line.
     #[must_use]
@@ -56,7 +64,9 @@ impl Format {
         match self {
             Self::Off => "off",
             Self::Obj => "obj",
+            Self::Ply => "ply",
             Self::Stl => "stl",
+            Self::Msh => "msh",
             Self::SimplexList => "simplices",
         }
     }
@@ -67,7 +77,9 @@ impl Format {
         match self {
             Self::Off => &["off", "coff", "noff", "cnoff"],
             Self::Obj => &["obj"],
+            Self::Ply => &["ply"],
             Self::Stl => &["stl", "stla", "stlb"],
+            Self::Msh => &["msh", "msh2", "msh4", "gmsh"],
             Self::SimplexList => &["simplices", "facets", "lst", "txt"],
         }
     }
@@ -78,7 +90,9 @@ impl Format {
         match self {
             Self::Off => "Geomview OFF and its variants COFF, NOFF, 4OFF, nOFF, in text",
             Self::Obj => "Wavefront OBJ: faces, lines and points",
+            Self::Ply => "Stanford PLY, in text or binary: faces, edges and triangle strips",
             Self::Stl => "STL, in text or binary; corners with equal coordinates are welded",
+            Self::Msh => "Gmsh MSH 2.2 and 4.1, in text or binary, cells of all dimensions",
             Self::SimplexList => "one simplex a line by its vertex labels, or lists of lists like [[1,2,3],[2,3,4]]",
         }
     }
@@ -170,7 +184,9 @@ fn read_sized(
         let (soup, mut report) = match format {
             Format::Off => off::read(&mut source, options),
             Format::Obj => obj::read(&mut source, options),
+            Format::Ply => ply::read(&mut source, options),
             Format::Stl => stl::read(&mut source, options),
+            Format::Msh => msh::read(&mut source, options),
             Format::SimplexList => simplex_list::read(&mut source, options),
         }?;
         report.gzip = source.gzip;

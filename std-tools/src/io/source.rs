@@ -8,8 +8,8 @@ use std::io::{self, Read};
 
 use flate2::read::MultiGzDecoder;
 
-use super::error::{ErrorKind, Fault, Position};
-use super::text::Line;
+use super::error::{ErrorKind, Fault, Position, excerpt};
+use super::text::{Line, Origin};
 
 /// Bytes asked from the reader at a time; also the most that detection may look at.
 const CHUNK: usize = 256 * 1024;
@@ -54,6 +54,8 @@ pub(super) struct Source<'a> {
     pub(super) length: Option<u64>,
     /// Whether the input is compressed.
     pub(super) gzip: bool,
+    /// Whether binary data have come, after which lines cannot be counted and places are bytes.
+    pub(super) binary: bool,
 }
 
 impl<'a> Source<'a> {
@@ -85,6 +87,7 @@ impl<'a> Source<'a> {
             unended: None,
             length,
             gzip: false,
+            binary: false,
         }
     }
 
@@ -144,6 +147,30 @@ impl<'a> Source<'a> {
         Ok(&self.buffer[taken])
     }
 
+    /// Passes over `count` bytes, without keeping them.
+    pub(super) fn skip(&mut self, mut count: u64, expected: &'static str) -> Result<(), Fault> {
+        while count > 0 {
+            if self.peek(1)?.is_empty() {
+                return Err(truncated(self.byte(), expected));
+            }
+            let passed =
+                usize::try_from(count).map_or(self.end, |count| self.end.min(self.start.saturating_add(count)));
+            count -= (passed - self.start) as u64;
+            self.start = passed;
+        }
+        Ok(())
+    }
+
+    /// A fault if any byte is left.
+    pub(super) fn need_end_of_bytes(&mut self, of: &'static str) -> Result<(), Fault> {
+        let position = self.byte();
+        let left = self.peek(16)?;
+        if left.is_empty() {
+            return Ok(());
+        }
+        Err(Fault::new(position, ErrorKind::Trailing { of, found: excerpt(left) }))
+    }
+
     /// The number of the next byte.
     pub(super) fn byte(&self) -> Position {
         Position::Byte(self.offset())
@@ -152,12 +179,6 @@ impl<'a> Source<'a> {
     /// The number of the next byte, as a number.
     pub(super) fn offset(&self) -> u64 {
         self.base + self.start as u64
-    }
-
-    /// The next line without its line end; `None` at the end of the input.
-    pub(super) fn next_line(&mut self) -> Result<Option<Line<'_>>, Fault> {
-        let Some(length) = self.line_length(0)? else { return Ok(None) };
-        Ok(Some(self.hand_out(length)))
     }
 
     /// The next line that holds more than blanks and a comment, which `comment` begins; without the comment.
@@ -200,20 +221,22 @@ impl<'a> Source<'a> {
     /// The next line joined with those that follow as long as each ends in a backslash, which becomes a blank.
     pub(super) fn next_joined_line(&mut self) -> Result<Option<Line<'_>>, Fault> {
         let Some(mut length) = self.line_length(0)? else { return Ok(None) };
+        let mut joined = 0;
         loop {
             let line = &self.buffer[self.start..self.start + length];
             let text = line.strip_suffix(b"\r").unwrap_or(line);
             if text.last() != Some(&b'\\') {
-                return Ok(Some(self.hand_out(length)));
+                break;
             }
-            let backslash = text.len() - 1;
-            let more = self.line_length(length + 1)?;
-            self.buffer[self.start + backslash] = b' ';
-            match more {
-                Some(more) => length += 1 + more,
-                None => return Ok(Some(self.hand_out(length))),
-            }
+            let backslash = self.start + text.len() - 1;
+            self.buffer[backslash] = b' ';
+            let Some(more) = self.line_length(length + 1)? else { break };
+            length += 1 + more;
+            joined += 1;
         }
+        let number = self.lines + 1;
+        self.lines += joined;
+        Ok(Some(self.hand_out(length).starting_at(number)))
     }
 
     /// The length of the line that begins `from` bytes after the next byte; `None` at the end of the input.
@@ -239,19 +262,16 @@ impl<'a> Source<'a> {
     /// Consumes a line of the given length, and its line end if it has one.
     fn hand_out(&mut self, length: usize) -> Line<'_> {
         let text = self.start..self.start + length;
-        let number = self.lines + 1;
-        let bytes = &self.buffer[text.clone()];
-        // Joined lines hold line ends.
-        self.lines += memchr::memchr_iter(b'\n', bytes).count() as u64;
+        let origin = if self.binary { Origin::Byte(self.offset()) } else { Origin::Line(self.lines + 1) };
         if text.end < self.end {
             self.start = text.end + 1;
             self.lines += 1;
             self.unended = None;
         } else {
             self.start = text.end;
-            self.unended = Some(bytes.len() - memchr::memrchr(b'\n', bytes).map_or(0, |at| at + 1));
+            self.unended = Some(length);
         }
-        Line::new(bytes, number)
+        Line::new(&self.buffer[text], origin)
     }
 
     /// Passes over everything up to a line that starts with `mark`, which is not consumed; whether there is one.
@@ -278,6 +298,7 @@ impl<'a> Source<'a> {
     /// The place just after the last byte of text.
     pub(super) fn end_of_text(&self) -> Position {
         match self.unended {
+            _ if self.binary => self.byte(),
             Some(length) => Position::Text { line: self.lines + 1, column: length as u64 + 1 },
             None => Position::Text { line: self.lines + 1, column: 1 },
         }

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use foldhash::fast::RandomState;
 
-use super::error::{ErrorKind, Fault, excerpt};
+use super::error::{ErrorKind, Fault};
 use super::intake::Intake;
 use super::source::Source;
 use super::text::{Line, Word};
@@ -106,12 +106,7 @@ impl Stl {
             }
             self.facet(corners).map_err(|kind| Fault::new(position, kind))?;
         }
-        let position = source.byte();
-        let left = source.peek(16)?;
-        if left.is_empty() {
-            return Ok(());
-        }
-        Err(Fault::new(position, ErrorKind::Trailing { of: "file after the last facet", found: excerpt(left) }))
+        source.need_end_of_bytes("file after the last facet")
     }
 
     /// Reads the solids of a text file, one after the other.

@@ -10,7 +10,16 @@ use super::error::{ErrorKind, Fault, Position, excerpt};
 pub(super) struct Line<'a> {
     bytes: &'a [u8],
     at: usize,
-    number: u64,
+    origin: Origin,
+}
+
+/// What places in a line are counted from.
+#[derive(Clone, Copy)]
+pub(super) enum Origin {
+    /// The number of the line, from 1.
+    Line(u64),
+    /// The number of its first byte, in files that are binary in part.
+    Byte(u64),
 }
 
 /// A word of a line, and where in the line it begins.
@@ -25,8 +34,13 @@ fn is_blank(byte: u8) -> bool {
 }
 
 impl<'a> Line<'a> {
-    pub(super) fn new(bytes: &'a [u8], number: u64) -> Self {
-        Self { bytes, at: 0, number }
+    pub(super) fn new(bytes: &'a [u8], origin: Origin) -> Self {
+        Self { bytes, at: 0, origin }
+    }
+
+    /// The same line, which is the line with this number.
+    pub(super) fn starting_at(self, number: u64) -> Self {
+        Self { origin: Origin::Line(number), ..self }
     }
 
     /// The line up to a comment, which `mark` begins.
@@ -126,10 +140,16 @@ impl<'a> Line<'a> {
 
     /// Where byte `at` of the line stands in the input.
     pub(super) fn position(&self, at: usize) -> Position {
-        let before = &self.bytes[..at.min(self.bytes.len())];
-        let line = self.number + memchr::memchr_iter(b'\n', before).count() as u64;
-        let column = at - memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
-        Position::Text { line, column: column as u64 + 1 }
+        match self.origin {
+            Origin::Byte(first) => Position::Byte(first + at as u64),
+            Origin::Line(number) => {
+                // Joined lines hold line ends.
+                let before = &self.bytes[..at.min(self.bytes.len())];
+                let line = number + memchr::memchr_iter(b'\n', before).count() as u64;
+                let column = at - memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
+                Position::Text { line, column: column as u64 + 1 }
+            }
+        }
     }
 
     /// A fault at byte `at` of the line.
