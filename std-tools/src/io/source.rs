@@ -276,21 +276,21 @@ impl<'a> Source<'a> {
 
     /// Passes over everything up to a line that starts with `mark`, which is not consumed; whether there is one.
     pub(super) fn skip_to_line(&mut self, mark: &[u8]) -> Result<bool, Fault> {
-        let mut at_line_start = true;
+        // The bytes passed of the line at hand.
+        let mut passed = 0;
         loop {
             let unread = self.peek(mark.len())?;
-            if unread.len() < mark.len() {
-                self.start = self.end;
-                return Ok(false);
-            }
-            if at_line_start && unread == mark {
+            if passed == 0 && unread == mark {
                 return Ok(true);
             }
-            // Not over the line end itself, in whatever chunk it comes: what follows it may be the mark.
+            if unread.is_empty() {
+                self.unended = (passed > 0).then_some(passed);
+                return Ok(false);
+            }
             let unread = &self.buffer[self.start..self.end];
             let found = memchr::memchr(b'\n', unread);
-            at_line_start = found.is_some();
-            self.lines += u64::from(at_line_start);
+            passed = if found.is_some() { 0 } else { passed + unread.len() };
+            self.lines += u64::from(found.is_some());
             self.start += found.map_or(unread.len(), |found| found + 1);
         }
     }
