@@ -134,6 +134,31 @@ impl LabelTable {
         }
     }
 
+    /// How many labels there are.
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Integers(integers) => integers.labels.len(),
+            Self::Tokens(tokens) => tokens.labels.len(),
+        }
+    }
+
+    /// The labels that stay, by their numbers.
+    pub(super) fn into_labels_that(self, stays: &[bool]) -> Labels {
+        let mut each = stays.iter();
+        let mut stays = || each.next() == Some(&true);
+        match self {
+            Self::Integers(Integers { mut labels, .. }) => {
+                labels.retain(|_| stays());
+                Labels::Integers(labels)
+            }
+            Self::Tokens(Tokens { mut labels, .. }) => {
+                labels.retain(|_| stays());
+                Labels::Tokens(labels)
+            }
+        }
+    }
+
+    /// All labels, by their numbers.
     pub(super) fn into_labels(self) -> Labels {
         match self {
             Self::Integers(integers) => Labels::Integers(integers.labels),

@@ -160,5 +160,14 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
             return Err(truncated(source.end_of_text(), state.expected()));
         }
     }
-    Ok(list.intake.finish(list.labels.into_labels(), false, None))
+    let List { labels, mut intake, .. } = list;
+    let labels = if intake.report.degenerate_dropped > 0 {
+        // Nothing declares a label that only dropped simplices used.
+        let used = intake.used(labels.len());
+        intake.renumber(&used);
+        labels.into_labels_that(&used)
+    } else {
+        labels.into_labels()
+    };
+    Ok(intake.finish(labels, false, None))
 }
