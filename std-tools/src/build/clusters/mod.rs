@@ -27,8 +27,13 @@ where
     let num_tops = |tops: &Vec<bool>| tops.iter().filter(|&&is_top| is_top).count();
     let pairs = is_top.iter().enumerate().map(|(dim, tops)| num_tops(tops).saturating_mul(2 << dim));
     if pairs.fold(0, usize::saturating_add) / MANY_FACES <= arrays.num_simplices {
-        let relations = minima::find(&arrays, is_top, &stage);
-        pack(arrays, |write| relations.for_each_list(write))
+        if u32::from_usize(minima::num_links(&arrays)).is_some() {
+            let minima = minima::find::<I, u32>(&arrays, is_top, &stage);
+            pack(arrays, |write| minima.for_each_list(write))
+        } else {
+            let minima = minima::find::<I, u64>(&arrays, is_top, &stage);
+            pack(arrays, |write| minima.for_each_list(write))
+        }
     } else {
         let relations = union::find(&arrays, &stage);
         pack(arrays, |write| relations.iter().flat_map(union::Relations::iter).for_each(&mut *write))
