@@ -1,1 +1,3 @@
-//! One binary for all tests that cross crates.
+//! One binary for all tests that cross crates: a module is about one behaviour.
+
+mod relations;
