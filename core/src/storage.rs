@@ -139,8 +139,9 @@ impl<I: Index> Complex<'_, I> {
                 let clusters = self.cluster_counts(dim);
                 storage.pointers += count;
                 storage.general_lists += clusters.total() + count;
-                // A flagged simplex has one cluster: its entry and stop code are not there.
-                storage.lists += clusters.total() + count - 2 * clusters.single_cluster;
+                // A flagged simplex has one cluster: its entry and stop code are not there. (In a buffer that is not a
+                // complex it may have none.)
+                storage.lists += (clusters.total() + count).saturating_sub(2 * clusters.single_cluster);
             }
         }
         storage
