@@ -140,6 +140,7 @@ impl<'a> Sections<'_, 'a> {
                 SectionKind::LabelText | SectionKind::Provenance => (matches!(column, Column::U8(_)), None),
                 SectionKind::Coordinates => (matches!(column, Column::F32(_) | Column::F64(_)), vector_len(vertices)),
                 SectionKind::Parity => (matches!(column, Column::Bits { .. }), None),
+                SectionKind::Checksums => (matches!(column, Column::U32(_)), None),
                 SectionKind::Filtration => (matches!(column, Column::F64(_)), Some(levels.total())),
                 SectionKind::Attribute => (true, section.dim.and_then(|dim| vector_len(levels.ids(dim).len()))),
                 _ => (true, None),

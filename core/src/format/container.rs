@@ -402,8 +402,15 @@ impl<'a> Container<'a> {
         &self,
         order: ByteOrder,
     ) -> impl Iterator<Item = (SectionKind, Option<Dim>, Range<usize>)> + use<'a> {
-        self.entries(order)
-            .filter_map(|entry| Some((SectionKind::from_code(entry.code)?, dim_of(entry.dim), entry.range())))
+        self.all_spans_in(order).filter_map(|(kind, dim, range)| Some((kind?, dim, range)))
+    }
+
+    /// The same with the sections of unknown kinds.
+    pub(super) fn all_spans_in(
+        &self,
+        order: ByteOrder,
+    ) -> impl Iterator<Item = (Option<SectionKind>, Option<Dim>, Range<usize>)> + use<'a> {
+        self.entries(order).map(|entry| (SectionKind::from_code(entry.code), dim_of(entry.dim), entry.range()))
     }
 
     /// Checks that the bytes between the sections are zero.
