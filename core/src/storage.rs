@@ -110,6 +110,10 @@ impl<I: Index> Complex<'_, I> {
     #[must_use]
     pub fn cluster_counts(&self, dim: Dim) -> ClusterCounts {
         let mut counts = ClusterCounts { by_dim: [0; MAX_DIM + 1], single_cluster: 0, tops: 0 };
+        if self.dim() == Some(dim) {
+            // Nothing is stored for them; there may be more than the buffer has bytes.
+            return ClusterCounts { tops: self.num_simplices_of_dim(dim), ..counts };
+        }
         for simplex in self.simplices_of_dim(dim) {
             let mut any = false;
             for cluster in self.clusters(simplex) {

@@ -47,3 +47,15 @@ fn of_the_least_complexes_at_every_width() {
         }
     }
 }
+
+/// A complex of vertices alone takes no byte a simplex: n is not bounded by the length of the file.
+#[test]
+fn of_many_isolated_vertices() {
+    let oracle = Oracle::new(&(0..3000).map(|vertex| [vertex]).collect::<Vec<_>>());
+    let bytes = encode(&oracle, &Options::bare(IndexWidth::Bits16));
+    assert!(bytes.len() < 1000);
+    let complex = sig_core::Complex::<u16>::from_bytes(&bytes).unwrap();
+    assert_eq!((complex.num_vertices(), complex.dim()), (3000, Some(0)));
+    assert_eq!(complex.validate(), Ok(()));
+    assert!(complex.simplices().all(|vertex| complex.is_top(vertex)));
+}
