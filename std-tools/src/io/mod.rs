@@ -21,6 +21,8 @@ mod report;
 mod simplex_list;
 mod source;
 mod stl;
+#[cfg(test)]
+mod tests;
 mod text;
 
 use std::fmt;

@@ -125,7 +125,7 @@ fn bracket_line(list: &mut List, state: &mut State, mut line: Line<'_>) -> Resul
                 line.seek(word.at);
                 return Err(line.trailing("file after the list"));
             }
-            (State::Label | State::AfterLabel, label) if !matches!(label, b"[" | b"]" | b"," | b";") => {
+            (State::Label, label) if !matches!(label, b"[" | b"]" | b"," | b";") => {
                 list.label(word, &line)?;
                 State::AfterLabel
             }

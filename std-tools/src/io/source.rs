@@ -72,6 +72,10 @@ impl<'a> Source<'a> {
             let decoder = MultiGzDecoder::new(head.chain(source.reader));
             source = Self { gzip: true, ..Self::over(Box::new(decoder), None) };
         }
+        // A byte order mark is no part of the text: it must not stick to the first word.
+        if source.peek(3)? == "\u{feff}".as_bytes() {
+            source.start += 3;
+        }
         Ok(source)
     }
 
@@ -111,7 +115,8 @@ impl<'a> Source<'a> {
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
-                    let position = Position::Byte(self.base + self.end as u64);
+                    let byte = self.base + self.end as u64;
+                    let position = if byte == 0 { Position::Whole } else { Position::Byte(byte) };
                     return Err(Fault::new(position, ErrorKind::Io(error)));
                 }
             }
@@ -244,16 +249,17 @@ impl<'a> Source<'a> {
         let mut searched = from;
         loop {
             let unread = &self.buffer[self.start..self.end];
-            if let Some(found) = unread.get(searched..).and_then(|rest| memchr::memchr(b'\n', rest)) {
-                return Ok(Some(searched + found - from));
-            }
-            searched = searched.max(unread.len());
+            let found = unread.get(searched..).and_then(|rest| memchr::memchr(b'\n', rest));
+            searched = found.map_or(unread.len().max(searched), |found| searched + found);
             if searched > MAX_LINE {
                 let position = Position::Text { line: self.lines + 1, column: MAX_LINE as u64 + 1 };
                 return Err(Fault::new(position, ErrorKind::LineTooLong { limit: MAX_LINE }));
             }
+            if found.is_some() {
+                return Ok(Some(searched - from));
+            }
             if self.exhausted {
-                return Ok((unread.len() > from).then(|| unread.len() - from));
+                return Ok((searched > from).then(|| searched - from));
             }
             self.refill()?;
         }
@@ -276,21 +282,21 @@ impl<'a> Source<'a> {
 
     /// Passes over everything up to a line that starts with `mark`, which is not consumed; whether there is one.
     pub(super) fn skip_to_line(&mut self, mark: &[u8]) -> Result<bool, Fault> {
-        let mut at_line_start = true;
+        // The bytes passed of the line at hand.
+        let mut passed = 0;
         loop {
             let unread = self.peek(mark.len())?;
-            if unread.len() < mark.len() {
-                self.start = self.end;
-                return Ok(false);
-            }
-            if at_line_start && unread == mark {
+            if passed == 0 && unread == mark {
                 return Ok(true);
             }
-            // Not over the line end itself, in whatever chunk it comes: what follows it may be the mark.
+            if unread.is_empty() {
+                self.unended = (passed > 0).then_some(passed);
+                return Ok(false);
+            }
             let unread = &self.buffer[self.start..self.end];
             let found = memchr::memchr(b'\n', unread);
-            at_line_start = found.is_some();
-            self.lines += u64::from(at_line_start);
+            passed = if found.is_some() { 0 } else { passed + unread.len() };
+            self.lines += u64::from(found.is_some());
             self.start += found.map_or(unread.len(), |found| found + 1);
         }
     }

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use foldhash::fast::RandomState;
 
-use super::error::{ErrorKind, Fault};
+use super::error::{ErrorKind, Fault, Position};
 use super::intake::Intake;
 use super::source::Source;
 use super::text::{Line, Word};
@@ -91,17 +91,19 @@ impl Stl {
         let header = source.take(HEADER, "84 bytes of header")?;
         let facets = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
         for _ in 0..facets {
-            let position = source.byte();
+            let (position, start) = (source.byte(), source.offset());
             let record = source.take(FACET, "as many facets as the header says")?;
-            let mut corners = [0; 3];
-            for (vertex, bytes) in corners.iter_mut().zip(record[12..48].chunks_exact(12)) {
-                let mut corner = [0.0; 3];
-                for (value, bytes) in corner.iter_mut().zip(bytes.chunks_exact(4)) {
-                    *value = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-                    if !value.is_finite() {
-                        return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
-                    }
+            let mut values = [0.0; 9];
+            for (number, (value, bytes)) in (0..).zip(values.iter_mut().zip(record[12..48].chunks_exact(4))) {
+                *value = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+                if !value.is_finite() {
+                    let position = Position::Byte(start + 12 + 4 * number);
+                    return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
                 }
+            }
+            let mut corners = [0; 3];
+            for (vertex, corner) in corners.iter_mut().zip(values.chunks_exact(3)) {
+                let corner = [corner[0], corner[1], corner[2]];
                 *vertex = self.weld.vertex(corner).map_err(|kind| Fault::new(position, kind))?;
             }
             self.facet(corners).map_err(|kind| Fault::new(position, kind))?;

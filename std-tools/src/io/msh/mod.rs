@@ -108,10 +108,13 @@ fn text_shape(line: &Line<'_>, word: Word<'_>) -> Result<Shape, Fault> {
     shape(line.parse_integer(word, EXPECTED)?).ok_or_else(|| line.unexpected(word, EXPECTED))
 }
 
-/// The element type with a number in binary data.
-fn binary_shape(number: i64, source: &Source<'_>) -> Result<Shape, Fault> {
-    let unknown = || ErrorKind::Unsupported(format!("elements of type {number} are not read").into());
-    shape(number).ok_or_else(|| Fault::new(source.byte(), unknown()))
+/// The next element type in binary data.
+fn binary_shape(source: &mut Source<'_>, binary: Binary, expected: &'static str) -> Result<Shape, Fault> {
+    let position = source.byte();
+    let number = binary.int(source, expected)?;
+    shape(number.into()).ok_or_else(|| {
+        Fault::new(position, ErrorKind::Unsupported(format!("elements of type {number} are not read").into()))
+    })
 }
 
 /// Reads `version file-type data-size`, and the 1 that tells the byte order of a binary file.
@@ -266,12 +269,11 @@ impl Binary {
 
     /// The next three coordinates.
     fn point(self, source: &mut Source<'_>) -> Result<[f64; 3], Fault> {
-        let position = source.byte();
-        let bytes = source.take(24, "the coordinates of the node")?;
         let mut point = [0.0; 3];
-        for (value, bytes) in point.iter_mut().zip(bytes.chunks_exact(8)) {
+        for value in &mut point {
+            let position = source.byte();
             let mut number = [0; 8];
-            number.copy_from_slice(bytes);
+            number.copy_from_slice(source.take(8, "a coordinate of the node")?);
             *value = if self.big_endian { f64::from_be_bytes(number) } else { f64::from_le_bytes(number) };
             if !value.is_finite() {
                 return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));

@@ -66,8 +66,7 @@ fn binary_elements(source: &mut Source<'_>, binary: Binary, count: u64, mesh: &m
     const EXPECTED: &str = "as many elements as the section says";
     let mut read = 0;
     while read < count {
-        let number = binary.int(source, EXPECTED)?;
-        let shape = binary_shape(number.into(), source)?;
+        let shape = binary_shape(source, binary, EXPECTED)?;
         let position = source.byte();
         let follow = binary.count(source, "the number of elements of this type that follow")?;
         if follow == 0 || follow > count - read {

@@ -143,8 +143,7 @@ fn binary_element_block(source: &mut Source<'_>, binary: Binary, size: usize, me
     const EXPECTED: &str = "as many blocks of elements as the section says";
     binary.int(source, EXPECTED)?;
     binary.int(source, EXPECTED)?;
-    let number = binary.int(source, EXPECTED)?;
-    let shape = binary_shape(number.into(), source)?;
+    let shape = binary_shape(source, binary, EXPECTED)?;
     let count = binary.size(source, size, EXPECTED)?;
     for _ in 0..count {
         let start = source.byte();
