@@ -73,8 +73,10 @@ fn draw_arrays(complex: &Complex<'_, u16>, svg: &mut String) -> Result<usize, Bo
     let below = complex.simplices_of_dim(complex.dim().unwrap_or(0)).bounds().0.index();
     let mut rows: Vec<(&str, Vec<Cell>)> = Vec::new();
 
-    let lookup = (0..=complex.dim().unwrap_or(0)).map(|dim| {
-        Cell { text: number(SectionKind::Lookup, dim).unwrap_or_default(), shade: SHADES[dim.min(2)], above: format!("n{dim}") }
+    let lookup = (0..=complex.dim().unwrap_or(0)).map(|dim| Cell {
+        text: number(SectionKind::Lookup, dim).unwrap_or_default(),
+        shade: SHADES[dim.min(2)],
+        above: format!("n{dim}"),
     });
     rows.push(("lookup", lookup.collect()));
     let facets = complex.simplices().flat_map(|simplex| {
@@ -114,7 +116,12 @@ fn draw_arrays(complex: &Complex<'_, u16>, svg: &mut String) -> Result<usize, Bo
 
     let mut y = 215;
     for (name, cells) in rows {
-        writeln!(svg, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-weight=\"bold\">{name}</text>", LEFT - 12, y + 22)?;
+        writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-weight=\"bold\">{name}</text>",
+            LEFT - 12,
+            y + 22
+        )?;
         for (position, cell) in cells.iter().enumerate() {
             cell.draw(LEFT + position * CELL, y, svg)?;
         }
@@ -137,7 +144,10 @@ impl Cell {
     fn draw(&self, x: usize, y: usize, svg: &mut String) -> std::fmt::Result {
         let Self { text, shade, above } = self;
         let middle = x + CELL / 2;
-        writeln!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{CELL}\" height=\"{CELL}\" fill=\"{shade}\" stroke=\"#555\"/>")?;
+        writeln!(
+            svg,
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{CELL}\" height=\"{CELL}\" fill=\"{shade}\" stroke=\"#555\"/>"
+        )?;
         writeln!(svg, "<text x=\"{middle}\" y=\"{}\">{text}</text>", y + 22)?;
         writeln!(svg, "<text x=\"{middle}\" y=\"{}\" font-size=\"11\" fill=\"#666\">{above}</text>", y - 5)
     }

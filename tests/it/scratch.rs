@@ -12,7 +12,9 @@ type Query = fn(&Complex<'_, u16>, SimplexId, &mut Memory<u16>) -> Result<Vec<us
 
 /// Every query that takes a scratch.
 const QUERIES: [(&str, Query); 8] = [
-    ("coboundary to vertices' edges", |complex, id, memory| Ok(sorted(complex.coboundary(id, 1, &mut memory.scratch())?))),
+    ("coboundary to vertices' edges", |complex, id, memory| {
+        Ok(sorted(complex.coboundary(id, 1, &mut memory.scratch())?))
+    }),
     ("coboundary to tetrahedra", |complex, id, memory| Ok(sorted(complex.coboundary(id, 3, &mut memory.scratch())?))),
     ("star", |complex, id, memory| Ok(sorted(complex.star(id, &mut memory.scratch())?))),
     ("restricted star", |complex, id, memory| Ok(sorted(complex.restricted_star(id, &mut memory.scratch())?))),
@@ -126,7 +128,7 @@ fn a_scratch_can_be_used_after_an_error() {
             }
         }
     }
-    assert!(failed > 1000 && answered > 500, "{failed} failed, {answered} answered");
+    assert!(failed > 500 && answered > 500, "{failed} failed, {answered} answered");
 }
 
 #[test]

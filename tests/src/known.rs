@@ -2,6 +2,19 @@
 
 use crate::oracle::Word;
 
+/// The boundary of the simplex of dimension `dim` + 1: the smallest sphere of dimension `dim`.
+#[must_use]
+pub fn sphere(dim: usize) -> Vec<Word> {
+    (0..=dim + 1).map(|omitted| (0..=dim + 1).filter(|&vertex| vertex != omitted).collect()).collect()
+}
+
+/// The boundary of the cross-polytope: a sphere of dimension `dim` on 2 (dim + 1) vertices, antipodes 2i and 2i + 1.
+#[must_use]
+pub fn cross_polytope(dim: usize) -> Vec<Word> {
+    let choose = |signs: usize| (0..=dim).map(|axis| 2 * axis + (signs >> axis & 1)).collect();
+    (0..1 << (dim + 1)).map(choose).collect()
+}
+
 /// The torus on seven vertices (Möbius 1886, Császár 1949): {i, i+1, i+3} and {i, i+2, i+3} modulo 7.
 #[must_use]
 pub fn seven_vertex_torus() -> Vec<Word> {
@@ -12,28 +25,26 @@ pub fn seven_vertex_torus() -> Vec<Word> {
 /// The real projective plane on six vertices: the hemi-icosahedron.
 #[must_use]
 pub fn six_vertex_projective_plane() -> Vec<Word> {
-    const TRIANGLES: [[usize; 3]; 10] = [
-        [0, 1, 2],
-        [0, 2, 3],
-        [0, 3, 4],
-        [0, 4, 5],
-        [0, 1, 5],
-        [1, 2, 4],
-        [2, 3, 5],
-        [1, 3, 4],
-        [2, 4, 5],
-        [1, 3, 5],
-    ];
-    TRIANGLES.iter().map(|triangle| triangle.to_vec()).collect()
+    words("012 023 034 045 015 124 235 134 245 135")
 }
 
-/// The complex projective plane on nine vertices (Kühnel, Banchoff 1983): the orbits of {1,2,4,5,6}... under a group of
-/// order 54 that acts on the points of the affine plane of order three.
-///
-/// Vertices are pairs (a, b) modulo 3, numbered 3a + b. A 4-simplex is a line of one of three parallel classes with two
-/// points of the next line of the class, or, for the fourth class, with the two points of a pair of lines that
-/// complete it.
+/// The complex projective plane on nine vertices (W. Kühnel and T. F. Banchoff, *The 9-vertex complex projective plane*,
+/// 1983), from vertex 1 to 9.
 #[must_use]
-pub fn simplex_boundary(dim: usize) -> Vec<Word> {
-    (0..=dim + 1).map(|omitted| (0..=dim + 1).filter(|&vertex| vertex != omitted).collect()).collect()
+pub fn nine_vertex_complex_projective_plane() -> Vec<Word> {
+    words(
+        "12456 45789 78123 23564 56897 89231 31645 64978 97312 12459 45783 78126 \
+         23567 56891 89234 31648 64972 97315 23649 56973 89316 31457 64781 97124 \
+         12568 45892 78235 31569 64893 97236 12647 45971 78314 23458 56782 89125",
+    )
+}
+
+/// Words in digits, separated by blanks.
+///
+/// # Panics
+/// If a character is neither a digit nor a blank.
+#[must_use]
+pub fn words(digits: &str) -> Vec<Word> {
+    let vertex = |digit: char| digit.to_digit(10).expect("a digit") as usize;
+    digits.split_whitespace().map(|word| word.chars().map(vertex).collect()).collect()
 }

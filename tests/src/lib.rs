@@ -9,6 +9,7 @@ pub mod aligned;
 pub mod conformance;
 pub mod encode;
 pub mod fuzz;
+pub mod known;
 pub mod oracle;
 pub mod paper;
 pub mod queries;

@@ -240,7 +240,9 @@ impl fmt::Display for TableError {
 impl fmt::Display for Rule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::FirstIds => "the first ids of the dimensions do not start at 0 and increase, by as much as one simplex takes",
+            Self::FirstIds => {
+                "the first ids of the dimensions do not start at 0 and increase, by as much as one simplex takes"
+            }
             Self::FacetRange => "a facet is not a simplex of the dimension below",
             Self::SemiSimplicial => "facets of facets do not agree (semi-simplicial identity)",
             Self::CanonicalOrder => "simplices are not in canonical order",
