@@ -1,8 +1,10 @@
 //! One binary for all tests that cross crates: a module is about one behaviour.
 
+mod builder;
 mod format;
 mod hostile;
 mod paper_figures;
 mod relations;
+mod rules;
 mod scratch;
 mod storage;

@@ -64,11 +64,14 @@ fn row(oracle: &Oracle, simplex: usize) -> usize {
 #[test]
 fn lookup() {
     let (oracle, bytes) = example();
-    for (element, value) in [(0, 1), (1, 0), (1, 7), (2, 8), (3, 100), (3, 0xFFFF), (2, get(&bytes, SectionKind::Lookup, 3))] {
+    for (element, value) in
+        [(0, 1), (1, 0), (1, 7), (2, 8), (3, 100), (3, 0xFFFF), (2, get(&bytes, SectionKind::Lookup, 3))]
+    {
         let mut damaged = bytes.clone();
         set(&mut damaged, SectionKind::Lookup, element, value);
         let refused = Complex::<u16>::from_bytes(&damaged).unwrap_err();
-        let first_ids = matches!(refused, FormatError::Invalid { section: SectionKind::Lookup, rule: Rule::FirstIds, .. });
+        let first_ids =
+            matches!(refused, FormatError::Invalid { section: SectionKind::Lookup, rule: Rule::FirstIds, .. });
         assert!(first_ids || matches!(refused, FormatError::Table { .. }), "{element} set to {value}: {refused}");
     }
     assert_eq!(oracle.f_vector().len(), 4);
@@ -215,7 +218,11 @@ fn optional_sections() {
     };
     assert_eq!(damage(SectionKind::ChildOffsets, &|bytes| bytes[4] += 1), (2, Rule::ChildOffset));
     assert_eq!(damage(SectionKind::LastVertices, &|bytes| bytes[20] += 1), (10, Rule::LastVertex));
-    assert_eq!(damage(SectionKind::LabelText, &|bytes| bytes[0] = 0xFF).1, Rule::Labels);
+    let mut damaged = bytes.clone();
+    let text = section(&bytes, SectionKind::LabelText);
+    damaged[text.start + 12] = 0xFF;
+    // The text is cut by the offsets, so the label that is no UTF-8 is named by its end.
+    assert_eq!(broken(&damaged), (SectionKind::LabelOffsets, 2, Rule::Labels));
     assert_eq!(damage(SectionKind::Provenance, &|bytes| bytes[3] = 0xFF), (3, Rule::Text));
     let value = |value: f64| move |bytes: &mut [u8]| bytes[..8].copy_from_slice(&value.to_le_bytes());
     for bad in [f64::NAN, -0.0] {
