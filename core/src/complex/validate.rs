@@ -63,9 +63,8 @@ impl<I: Index> Complex<'_, I> {
 
     /// Flags are zero at dimension d − 1 and in the padding.
     fn validate_flag_bits(&self) -> Result<(), FormatError> {
-        let flagged = self.levels().dims().checked_sub(2).map_or(0, |dim| self.levels().start(dim));
         let bit = |bit: usize| self.flags.get(bit / 8).is_some_and(|byte| byte >> (bit % 8) & 1 == 1);
-        match (flagged..self.flags.len() * 8).find(|&position| bit(position)) {
+        match (self.levels().flags_end()..self.flags.len() * 8).find(|&position| bit(position)) {
             Some(position) => Err(invalid(SectionKind::Flags, position, Rule::FlagBits)),
             None => Ok(()),
         }

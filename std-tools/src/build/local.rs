@@ -86,6 +86,7 @@ struct Nodes {
 #[derive(Default)]
 pub(super) struct Local {
     neighbours: Vec<u32>,
+    names: Names,
     /// The letters of all tails.
     letters: Vec<u32>,
     tails: Vec<Tail>,
@@ -152,12 +153,21 @@ impl Local {
 
     /// Replaces the vertices in the tails by their positions among all of them.
     fn name_letters(&mut self) {
+        self.names.clear(self.letters.len());
         self.neighbours.clear();
-        self.neighbours.extend_from_slice(&self.letters);
+        for &vertex in &self.letters {
+            let slot = self.names.slot(vertex);
+            if slot.0 == ABSENT {
+                *slot = (vertex, 0);
+                self.neighbours.push(vertex);
+            }
+        }
         self.neighbours.sort_unstable();
-        self.neighbours.dedup();
+        for (&vertex, letter) in self.neighbours.iter().zip(0..) {
+            self.names.slot(vertex).1 = letter;
+        }
         for letter in &mut self.letters {
-            *letter = narrow(self.neighbours.partition_point(|&vertex| vertex < *letter));
+            *letter = self.names.slot(*letter).1;
         }
     }
 
@@ -265,6 +275,37 @@ impl Local {
 #[expect(clippy::cast_possible_truncation)]
 fn low_half(key: u64) -> u32 {
     key as u32
+}
+
+/// What stands in an empty slot; no vertex id is as large.
+const ABSENT: u32 = u32::MAX;
+
+/// A hash table from vertices to letters, by linear probing. It lives for a vertex, and is as small as that needs.
+#[derive(Default)]
+struct Names {
+    slots: Vec<(u32, u32)>,
+    shift: u32,
+}
+
+impl Names {
+    /// Empties the table and makes room for `count` vertices.
+    fn clear(&mut self, count: usize) {
+        let bits = (2 * count).next_power_of_two().trailing_zeros().max(1);
+        self.shift = 64 - bits;
+        self.slots.clear();
+        self.slots.resize(1 << bits, (ABSENT, 0));
+    }
+
+    /// The slot of a vertex, or the empty one where it goes.
+    fn slot(&mut self, vertex: u32) -> &mut (u32, u32) {
+        // Multiplication by 2^64 over the golden ratio spreads consecutive ids.
+        let hash = u64::from(vertex).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mut slot = usize::try_from(hash >> self.shift).unwrap_or(0);
+        while self.slots[slot].0 != vertex && self.slots[slot].0 != ABSENT {
+            slot = (slot + 1) % self.slots.len();
+        }
+        &mut self.slots[slot]
+    }
 }
 
 /// The level of dimension `dim`, made if it is not there.
