@@ -3,6 +3,7 @@
 mod builder;
 mod format;
 mod hostile;
+mod known_triangulations;
 mod paper_figures;
 mod relations;
 mod rules;
