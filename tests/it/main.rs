@@ -2,6 +2,8 @@
 
 mod builder;
 mod format;
+mod fuzz_corpus;
+mod golden;
 mod hostile;
 mod known_triangulations;
 mod paper_figures;
