@@ -1,0 +1,71 @@
+//! The format of an input: by what its first bytes say for certain, then by its name, then by what they suggest.
+
+use super::error::{ErrorKind, Fault, Position};
+use super::source::Source;
+use super::{Format, obj, off, simplex_list, stl};
+
+/// The format of an input called `name`.
+pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Fault> {
+    let length = source.whole_length()?;
+    let head = source.head()?;
+    certain(head, length)
+        .or_else(|| by_name(name))
+        .or_else(|| suggested(head))
+        .ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownFormat))
+}
+
+/// The format that the extension of a name stands for, that of a compressed file being the one before `.gz`.
+fn by_name(name: &str) -> Option<Format> {
+    let name = name.get(..name.len().saturating_sub(3)).filter(|_| has_gz(name)).unwrap_or(name);
+    let (stem, extension) = name.rsplit_once('.')?;
+    // A dot may also stand in a directory, or begin the name.
+    if stem.is_empty() { None } else { Format::from_name(extension) }
+}
+
+fn has_gz(name: &str) -> bool {
+    name.len() > 3 && name.as_bytes()[name.len() - 3..].eq_ignore_ascii_case(b".gz")
+}
+
+/// The first line that is neither blank nor a comment.
+fn first_line(head: &[u8]) -> &[u8] {
+    head.split(|&byte| byte == b'\n')
+        .map(<[u8]>::trim_ascii)
+        .find(|line| !matches!(line, [] | [b'#', ..]))
+        .unwrap_or(&[])
+}
+
+fn first_word(line: &[u8]) -> &[u8] {
+    line.split(u8::is_ascii_whitespace).next().unwrap_or(&[])
+}
+
+/// The format of content that names it.
+fn certain(head: &[u8], length: Option<u64>) -> Option<Format> {
+    let line = first_line(head);
+    let word = first_word(line);
+    if word == b"ply" && line == word {
+        Some(Format::Ply)
+    } else if off::is_keyword(word) {
+        Some(Format::Off)
+    } else if line.starts_with(b"$") {
+        Some(Format::Msh)
+    } else if stl::is_binary(head, length) || stl::is_text(head) {
+        Some(Format::Stl)
+    } else {
+        None
+    }
+}
+
+/// The format of content that looks like it, but may be something else under another name.
+fn suggested(head: &[u8]) -> Option<Format> {
+    let line = first_line(head);
+    if simplex_list::opens_brackets(line) {
+        return Some(Format::SimplexList);
+    }
+    let lines =
+        || head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !matches!(line, [] | [b'#', ..]));
+    let is_vertex = |line: &[u8]| {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        words.next() == Some(b"v") && words.clone().count() >= 3
+    };
+    (lines().any(is_vertex) && lines().take(16).all(|line| obj::is_keyword(first_word(line)))).then_some(Format::Obj)
+}

@@ -1,0 +1,137 @@
+//! What a reader has gathered so far: the soup in the making and its report.
+
+use sig_core::MAX_DIM;
+
+use super::cone::{self, Polyhedron};
+use super::error::ErrorKind;
+use super::report::ReadReport;
+use super::{Format, ReadOptions};
+use crate::soup::{Coordinates, Labels, Scalars, Soup};
+
+/// The most room that a count declared in a header may reserve before any data has arrived, in vertices or cells.
+const RESERVE: u64 = 1 << 16;
+
+/// How much to reserve for `declared` items: never much, for headers lie.
+pub(super) fn reserve(declared: u64) -> usize {
+    usize::try_from(declared.min(RESERVE)).unwrap_or(0)
+}
+
+/// Why a cell is refused; the reader knows the place and what the input calls the vertices.
+pub(super) enum Refusal {
+    /// The cell repeats the vertex with this number.
+    Repeats { cell: &'static str, vertex: u32 },
+    /// The cell has too many vertices.
+    Vertices(usize),
+}
+
+impl Refusal {
+    /// The error for a reader that calls the vertices by `label`.
+    pub(super) fn kind(self, label: impl FnOnce(u32) -> String) -> ErrorKind {
+        match self {
+            Self::Repeats { cell, vertex } => ErrorKind::Degenerate { cell, vertex: label(vertex).into() },
+            Self::Vertices(vertices) => ErrorKind::TooManyDimensions { vertices },
+        }
+    }
+}
+
+/// Simplices gathered so far, and the report on them.
+pub(super) struct Intake {
+    simplices: Vec<Vec<u32>>,
+    pub(super) report: ReadReport,
+    drop_degenerate: bool,
+}
+
+impl Intake {
+    pub(super) fn new(format: Format, options: &ReadOptions<'_>) -> Self {
+        Self { simplices: Vec::new(), report: ReadReport::new(format), drop_degenerate: options.drop_degenerate }
+    }
+
+    /// Adds a simplex unless it repeats a vertex.
+    pub(super) fn simplex(&mut self, vertices: &[u32]) -> Result<(), Refusal> {
+        if vertices.is_empty() || vertices.len() > MAX_DIM + 1 {
+            return Err(Refusal::Vertices(vertices.len()));
+        }
+        match cone::repeated(vertices) {
+            None => self.push(vertices),
+            Some(_) if self.drop_degenerate => self.report.degenerate_dropped += 1,
+            Some(vertex) => return Err(Refusal::Repeats { cell: "simplex", vertex }),
+        }
+        Ok(())
+    }
+
+    /// Adds a polygon of any number of vertices, split if that is more than three.
+    pub(super) fn polygon(&mut self, vertices: &[u32], label: impl Fn(u32) -> u64) -> Result<(), Refusal> {
+        if vertices.len() <= 3 {
+            return self.simplex(vertices);
+        }
+        self.check("polygon", vertices)?;
+        self.report.polygons += 1;
+        cone::split_polygon(vertices, label, |triangle| self.piece(&triangle));
+        Ok(())
+    }
+
+    /// Adds a polyhedron, split into tetrahedra.
+    pub(super) fn polyhedron(
+        &mut self,
+        shape: Polyhedron,
+        corners: &[u32],
+        label: impl Fn(u32) -> u64,
+    ) -> Result<(), Refusal> {
+        self.check("polyhedron", corners)?;
+        self.report.polyhedra += 1;
+        shape.split(corners, label, |tetrahedron| self.piece(&tetrahedron));
+        Ok(())
+    }
+
+    fn check(&self, cell: &'static str, vertices: &[u32]) -> Result<(), Refusal> {
+        match cone::repeated(vertices) {
+            Some(vertex) if !self.drop_degenerate => Err(Refusal::Repeats { cell, vertex }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Adds a piece of a cell that may be degenerate only if such are dropped.
+    fn piece(&mut self, vertices: &[u32]) {
+        if cone::repeated(vertices).is_some() {
+            self.report.degenerate_dropped += 1;
+        } else {
+            self.report.split_into += 1;
+            self.push(vertices);
+        }
+    }
+
+    /// Adds a simplex of one to `MAX_DIM + 1` different vertices.
+    fn push(&mut self, vertices: &[u32]) {
+        let dim = vertices.len() - 1;
+        if self.simplices.len() <= dim {
+            self.simplices.resize_with(dim + 1, Vec::new);
+        }
+        self.simplices[dim].extend_from_slice(vertices);
+    }
+
+    /// The vertex numbers of all simplices, with repetitions.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = u32> {
+        self.simplices.iter().flatten().copied()
+    }
+
+    /// Gives every vertex number `v` of the simplices the number `renumbered[v]`.
+    pub(super) fn renumber(&mut self, renumbered: &[u32]) {
+        for vertex in self.simplices.iter_mut().flatten() {
+            *vertex = renumbered[*vertex as usize];
+        }
+    }
+
+    /// The soup, now that the vertices are known too.
+    pub(super) fn finish(
+        self,
+        labels: Labels,
+        declared: bool,
+        coordinates: Option<(usize, Scalars)>,
+    ) -> (Soup, ReadReport) {
+        let Self { simplices, mut report, .. } = self;
+        report.vertices = labels.len();
+        report.simplices = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).collect();
+        let coordinates = coordinates.map(|(dim, values)| Coordinates { dim, values });
+        (Soup { labels, declared, coordinates, simplices }, report)
+    }
+}

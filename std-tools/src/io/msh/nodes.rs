@@ -1,0 +1,111 @@
+//! The nodes of a mesh: tags, coordinates, and the way from a tag to a number.
+
+/// The nodes in the order of the file; a node's number is its place.
+pub(super) struct Nodes {
+    tags: Vec<u64>,
+    values: Vec<f64>,
+    index: Index,
+}
+
+/// The way from a tag to a number, the cheapest that the tags allow.
+enum Index {
+    /// The tags count up from this one.
+    Consecutive(u64),
+    /// The number by tag, `u32::MAX` where there is none: for tags not much greater than the number of nodes.
+    Table(Vec<u32>),
+    /// Tags and numbers, sorted by tag.
+    Sorted(Vec<(u64, u32)>),
+}
+
+impl Nodes {
+    pub(super) fn new() -> Self {
+        Self { tags: Vec::new(), values: Vec::new(), index: Index::Consecutive(0) }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.tags.len()
+    }
+
+    pub(super) fn tags(&self) -> &[u64] {
+        &self.tags
+    }
+
+    /// Adds a node's tag; false if there can be no more.
+    pub(super) fn push_tag(&mut self, tag: u64) -> bool {
+        self.tags.push(tag);
+        self.tags.len() < u32::MAX as usize
+    }
+
+    /// Adds coordinates; nodes get theirs in the order of their tags.
+    pub(super) fn push_point(&mut self, point: [f64; 3]) {
+        self.values.extend(point);
+    }
+
+    /// Prepares [`Self::find`], now that all nodes are there.
+    ///
+    /// # Errors
+    /// A tag that two nodes bear.
+    pub(super) fn index(&mut self) -> Result<(), u64> {
+        let first = self.tags.first().copied().unwrap_or(0);
+        let consecutive = self.tags.iter().zip(0..).all(|(&tag, number)| tag.checked_sub(first) == Some(number));
+        let greatest = self.tags.iter().copied().max().unwrap_or(0);
+        let numbers = 0..u32::MAX;
+        if consecutive {
+            self.index = Index::Consecutive(first);
+        } else if let Some(size) = usize::try_from(greatest).ok().filter(|&size| size <= 4 * self.tags.len() + 1024) {
+            let mut table = vec![u32::MAX; size + 1];
+            for (&tag, number) in self.tags.iter().zip(numbers) {
+                // The greatest tag fits the table, so all do.
+                let slot = table.get_mut(usize::try_from(tag).unwrap_or(usize::MAX)).ok_or(tag)?;
+                if *slot != u32::MAX {
+                    return Err(tag);
+                }
+                *slot = number;
+            }
+            self.index = Index::Table(table);
+        } else {
+            let mut sorted: Vec<(u64, u32)> = self.tags.iter().copied().zip(numbers).collect();
+            sorted.sort_unstable();
+            if let Some(pair) = sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+                return Err(pair[0].0);
+            }
+            self.index = Index::Sorted(sorted);
+        }
+        Ok(())
+    }
+
+    /// The number of the node with this tag.
+    pub(super) fn find(&self, tag: u64) -> Option<u32> {
+        match &self.index {
+            Index::Consecutive(first) => {
+                let number = u32::try_from(tag.checked_sub(*first)?).ok()?;
+                ((number as usize) < self.tags.len()).then_some(number)
+            }
+            Index::Table(table) => table.get(usize::try_from(tag).ok()?).copied().filter(|&number| number != u32::MAX),
+            Index::Sorted(sorted) => sorted.binary_search_by_key(&tag, |&(tag, _)| tag).ok().map(|at| sorted[at].1),
+        }
+    }
+
+    /// Leaves out nodes; gives the new number of each node that stays, by its old number.
+    pub(super) fn retain(&mut self, stays: impl Fn(usize) -> bool) -> Vec<u32> {
+        let mut renumbered = Vec::with_capacity(self.tags.len());
+        let mut next = 0u32;
+        for node in 0..self.tags.len() {
+            renumbered.push(next);
+            if stays(node) {
+                let to = next as usize;
+                self.tags[to] = self.tags[node];
+                self.values.copy_within(3 * node..3 * node + 3, 3 * to);
+                next += 1;
+            }
+        }
+        self.tags.truncate(next as usize);
+        self.values.truncate(3 * next as usize);
+        renumbered
+    }
+
+    /// The tags and the coordinates.
+    pub(super) fn into_parts(self) -> (Vec<u64>, Vec<f64>) {
+        (self.tags, self.values)
+    }
+}

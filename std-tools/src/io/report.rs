@@ -1,0 +1,76 @@
+//! What a reader has to say about an input that it accepted.
+
+use super::Format;
+
+/// What was found in an input, and what became of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ReadReport {
+    /// The format in which the input was read.
+    pub format: Format,
+    /// Whether the input was compressed with gzip.
+    pub gzip: bool,
+    /// The number of vertices.
+    pub vertices: usize,
+    /// The number of simplices in the soup by dimension, repeated ones included.
+    pub simplices: Vec<usize>,
+    /// Polygons of more than three vertices, split into triangles.
+    pub polygons: usize,
+    /// Polyhedra other than tetrahedra, split into tetrahedra.
+    pub polyhedra: usize,
+    /// Triangles and tetrahedra that polygons and polyhedra were split into.
+    pub split_into: usize,
+    /// Simplices dropped because they repeat a vertex.
+    pub degenerate_dropped: usize,
+    /// Facet corners (STL) that were welded to an earlier corner with the same coordinates.
+    pub welded_corners: usize,
+    /// Nodes left out because they lie inside edges, faces or volumes of higher-order elements, whose corners alone
+    /// are vertices (MSH).
+    pub inner_nodes_dropped: usize,
+    /// Parts of the input that the reader does not know or does not use.
+    pub ignored: Ignored,
+}
+
+impl ReadReport {
+    pub(super) fn new(format: Format) -> Self {
+        Self {
+            format,
+            gzip: false,
+            vertices: 0,
+            simplices: Vec::new(),
+            polygons: 0,
+            polyhedra: 0,
+            split_into: 0,
+            degenerate_dropped: 0,
+            welded_corners: 0,
+            inner_nodes_dropped: 0,
+            ignored: Ignored::default(),
+        }
+    }
+}
+
+/// Parts of an input that were passed over: keywords, elements, properties, sections.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Ignored {
+    /// How many times something was passed over.
+    pub count: u64,
+    /// The names of the first few, each once, in the order of the input.
+    pub names: Vec<String>,
+}
+
+impl Ignored {
+    /// How many names are kept, and how much of each.
+    const MOST: usize = 8;
+    const LONGEST: usize = 64;
+
+    pub(super) fn note(&mut self, name: &[u8]) {
+        self.count += 1;
+        if self.names.len() < Self::MOST {
+            let name = name[..name.len().min(Self::LONGEST)].escape_ascii().to_string();
+            if !self.names.contains(&name) {
+                self.names.push(name);
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+use std::io::Write;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use super::super::{Format, ReadOptions, read, read_bytes};
+use super::{msh, ply, stl};
+
+fn detected(name: &str, bytes: impl AsRef<[u8]>) -> Option<Format> {
+    let found = read_bytes(bytes.as_ref(), name, &ReadOptions::default());
+    found
+        .map(|(_, report)| report.format)
+        .map_err(|error| assert!(error.to_string().contains("tells the format"), "{error}"))
+        .ok()
+}
+
+#[test]
+fn content_that_is_certain_beats_the_name() {
+    for name in ["-", "x", "x.off", "x.obj", "x.txt", "dir.ply/x"] {
+        assert_eq!(detected(name, "# c\n\nOFF 0 0 0\n"), Some(Format::Off));
+        assert_eq!(detected(name, "nOFF 2 0 0 0\n"), Some(Format::Off));
+        assert_eq!(detected(name, ply::TEXT), Some(Format::Ply));
+        assert_eq!(detected(name, ply::binary(true)), Some(Format::Ply));
+        assert_eq!(detected(name, msh::TEXT_2), Some(Format::Msh));
+        assert_eq!(detected(name, msh::binary_4(8, false)), Some(Format::Msh));
+        assert_eq!(detected(name, stl::TEXT), Some(Format::Stl));
+        assert_eq!(detected(name, stl::binary("solid", &[])), Some(Format::Stl));
+        assert_eq!(detected(name, stl::binary("\u{1}", &[[[0.; 3], [1.; 3], [2.; 3]]])), Some(Format::Stl));
+    }
+}
+
+#[test]
+fn the_name_beats_content_that_only_suggests() {
+    let vertices = "v 1 2 3\nv 4 5 6\nv 7 8 9\n";
+    assert_eq!(detected("-", vertices), Some(Format::Obj));
+    assert_eq!(detected("x.OBJ", vertices), Some(Format::Obj));
+    assert_eq!(detected("x.txt", vertices), Some(Format::SimplexList));
+    assert_eq!(detected("-", "# list\nfacets:=[[1,2],[2,3]];\n"), Some(Format::SimplexList));
+    assert_eq!(detected("x.off", "1 0 0\n0 0 0\n"), Some(Format::Off));
+    assert_eq!(detected("a.b/x.simplices", "1 0 0x\n"), Some(Format::SimplexList));
+}
+
+#[test]
+fn an_unknown_format_is_refused_with_the_list_of_formats() {
+    assert_eq!(detected("-", "1 2 3\n"), None);
+    assert_eq!(detected("x.docx", "1 2 3\n"), None);
+    assert_eq!(detected(".obj", "1 2 3\n"), None);
+    let error = read_bytes(b"1 2 3\n", "-", &ReadOptions::default()).unwrap_err().to_string();
+    let expected = "<stdin>: neither the content nor the name tells the format; name it, one of: \
+                    off, obj, ply, stl, msh, simplices";
+    assert_eq!(error, expected);
+}
+
+#[test]
+fn names_of_formats() {
+    for &format in Format::ALL {
+        assert_eq!(Format::from_name(format.name()), Some(format));
+        assert_eq!(Format::from_name(&format.to_string().to_uppercase()), Some(format));
+        assert!(!format.description().is_empty());
+        for extension in format.extensions() {
+            assert_eq!(Format::from_name(extension), Some(format));
+        }
+    }
+    assert_eq!(Format::from_name("doc"), None);
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+#[test]
+fn gzip_is_decompressed_and_its_name_looked_through() {
+    // Two members one after the other are one file.
+    let text = b"1 0 0\n0 0 0\n";
+    let bytes = [gzip(&text[..5]), gzip(&text[5..])].concat();
+    let (soup, report) = read_bytes(&bytes, "x.off.GZ", &ReadOptions::default()).unwrap();
+    assert!(report.gzip);
+    assert_eq!((soup.labels.len(), report.format), (1, Format::Off));
+    let binary = gzip(&stl::binary("solid", &[[[0.; 3], [1.; 3], [2.; 3]]]));
+    assert_eq!(read_bytes(&binary, "-", &ReadOptions::default()).unwrap().1.format, Format::Stl);
+    let error = read_bytes(&bytes[..bytes.len() - 12], "x.off.gz", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("x.off.gz: byte ") && error.contains(": cannot read: "), "{error}");
+}
+
+#[test]
+fn progress_counts_the_bytes_of_the_compressed_input() {
+    let text = "1 2\n".repeat(100_000);
+    let bytes = gzip(text.as_bytes());
+    let (last, calls) = (AtomicU64::new(0), AtomicU64::new(0));
+    let progress = |read: u64| {
+        assert!(last.swap(read, Ordering::Relaxed) <= read);
+        calls.fetch_add(1, Ordering::Relaxed);
+    };
+    let options = ReadOptions { format: Some(Format::SimplexList), progress: Some(&progress), ..Default::default() };
+    assert_eq!(read(&bytes[..], "-", &options).unwrap().1.simplices, [0, 100_000]);
+    assert_eq!(last.into_inner(), bytes.len() as u64);
+    assert!(calls.into_inner() > 0);
+}

@@ -1,0 +1,280 @@
+//! A line of text as words and numbers, each with its place.
+
+use std::borrow::Cow;
+use std::str::FromStr;
+
+use super::error::{ErrorKind, Fault, Position, excerpt};
+
+/// A line, and the place reached in it.
+#[derive(Clone)]
+pub(super) struct Line<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    origin: Origin,
+}
+
+/// What places in a line are counted from.
+#[derive(Clone, Copy)]
+pub(super) enum Origin {
+    /// The number of the line, from 1.
+    Line(u64),
+    /// The number of its first byte, in files that are binary in part.
+    Byte(u64),
+}
+
+/// A word of a line, and where in the line it begins.
+#[derive(Clone, Copy)]
+pub(super) struct Word<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) at: usize,
+}
+
+fn is_blank(byte: u8) -> bool {
+    byte.is_ascii_whitespace()
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn new(bytes: &'a [u8], origin: Origin) -> Self {
+        Self { bytes, at: 0, origin }
+    }
+
+    /// The same line, which is the line with this number.
+    pub(super) fn starting_at(self, number: u64) -> Self {
+        Self { origin: Origin::Line(number), ..self }
+    }
+
+    /// The line up to a comment, which `mark` begins.
+    pub(super) fn without_comment(mut self, mark: u8) -> Self {
+        if let Some(end) = memchr::memchr(mark, self.bytes) {
+            self.bytes = &self.bytes[..end];
+        }
+        self
+    }
+
+    /// What is left of the line.
+    pub(super) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at.min(self.bytes.len())..]
+    }
+
+    /// Goes to `at`, a place that [`Word::at`] or [`Self::at`] told.
+    pub(super) fn seek(&mut self, at: usize) {
+        self.at = at;
+    }
+
+    /// The place reached.
+    pub(super) fn at(&self) -> usize {
+        self.at
+    }
+
+    /// Goes to the next byte that is not blank; whether there is one.
+    pub(super) fn skip_blanks(&mut self) -> bool {
+        self.skip_while(is_blank);
+        self.at < self.bytes.len()
+    }
+
+    /// The next word.
+    pub(super) fn word(&mut self) -> Option<Word<'a>> {
+        self.skip_blanks();
+        let at = self.at;
+        self.skip_while(|byte| !is_blank(byte));
+        (self.at > at).then(|| Word { bytes: &self.bytes[at..self.at], at })
+    }
+
+    /// The next word, where each of the bytes `marks` is a word of its own.
+    pub(super) fn part(&mut self, marks: &[u8]) -> Option<Word<'a>> {
+        self.skip_blanks();
+        let at = self.at;
+        self.skip_while(|byte| !is_blank(byte) && !marks.contains(&byte));
+        if self.at == at && at < self.bytes.len() {
+            self.at += 1;
+        }
+        (self.at > at).then(|| Word { bytes: &self.bytes[at..self.at], at })
+    }
+
+    /// Goes to the next byte of which `passed` is not true.
+    pub(super) fn skip_while(&mut self, passed: impl Fn(u8) -> bool) {
+        while self.bytes.get(self.at).is_some_and(|&byte| passed(byte)) {
+            self.at += 1;
+        }
+    }
+
+    /// The next word, a fault if there is none.
+    pub(super) fn need_word(&mut self, expected: &'static str) -> Result<Word<'a>, Fault> {
+        self.word().ok_or_else(|| self.short(expected))
+    }
+
+    /// The next word as an integer that fits `T`.
+    pub(super) fn integer<T: TryFrom<i64>>(&mut self, expected: &'static str) -> Result<T, Fault> {
+        let word = self.need_word(expected)?;
+        self.parse_integer(word, expected)
+    }
+
+    /// A word of this line as an integer that fits `T`.
+    pub(super) fn parse_integer<T: TryFrom<i64>>(&self, word: Word<'_>, expected: &'static str) -> Result<T, Fault> {
+        parse_integer(word.bytes)
+            .and_then(|value| T::try_from(value).ok())
+            .ok_or_else(|| self.unexpected(word, expected))
+    }
+
+    /// The next word as a finite number.
+    pub(super) fn float<T: Float>(&mut self, expected: &'static str) -> Result<T, Fault> {
+        let word = self.need_word(expected)?;
+        match parse_float::<T>(word.bytes) {
+            Some(value) if value.finite() => Ok(value),
+            Some(_) => Err(self.fault(word.at, ErrorKind::NotFinite { found: excerpt(word.bytes) })),
+            None => Err(self.unexpected(word, expected)),
+        }
+    }
+
+    /// A fault unless only blanks are left.
+    pub(super) fn end(&mut self) -> Result<(), Fault> {
+        if self.skip_blanks() { Err(self.trailing("line")) } else { Ok(()) }
+    }
+
+    /// The fault of a line on which, or after which, more stands than may.
+    pub(super) fn trailing(&mut self, of: &'static str) -> Fault {
+        self.skip_blanks();
+        let (at, found) = self.word().map_or((self.at, &b""[..]), |word| (word.at, word.bytes));
+        self.fault(at, ErrorKind::Trailing { of, found: excerpt(found) })
+    }
+
+    /// Where byte `at` of the line stands in the input.
+    pub(super) fn position(&self, at: usize) -> Position {
+        match self.origin {
+            Origin::Byte(first) => Position::Byte(first + at as u64),
+            Origin::Line(number) => {
+                // Joined lines hold line ends.
+                let before = &self.bytes[..at.min(self.bytes.len())];
+                let line = number + memchr::memchr_iter(b'\n', before).count() as u64;
+                let column = at - memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
+                Position::Text { line, column: column as u64 + 1 }
+            }
+        }
+    }
+
+    /// A fault at byte `at` of the line.
+    pub(super) fn fault(&self, at: usize, kind: ErrorKind) -> Fault {
+        Fault::new(self.position(at), kind)
+    }
+
+    /// The fault of a word that is not what it should be.
+    pub(super) fn unexpected(&self, word: Word<'_>, expected: impl Into<Cow<'static, str>>) -> Fault {
+        self.fault(word.at, ErrorKind::Expected { expected: expected.into(), found: excerpt(word.bytes) })
+    }
+
+    /// The fault of a line that ends too early.
+    pub(super) fn short(&self, expected: impl Into<Cow<'static, str>>) -> Fault {
+        let end = self.bytes.trim_ascii_end().len();
+        self.fault(end, ErrorKind::ShortLine { expected: expected.into() })
+    }
+}
+
+/// Numbers that stand in text as floating point.
+pub(super) trait Float: Copy + FromStr {
+    fn finite(self) -> bool;
+    fn negated(self) -> Self;
+    /// `mantissa · 10^exponent` if that takes a single rounding.
+    fn exact(mantissa: u64, exponent: i32) -> Option<Self>;
+}
+
+impl Float for f64 {
+    fn negated(self) -> Self {
+        -self
+    }
+
+    fn finite(self) -> bool {
+        self.is_finite()
+    }
+
+    fn exact(mantissa: u64, exponent: i32) -> Option<Self> {
+        // Both operands are exact, so the one operation rounds correctly (Clinger 1990).
+        const POWERS: [f64; 23] = [
+            1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+            1e19, 1e20, 1e21, 1e22,
+        ];
+        if mantissa > 1 << 53 {
+            return None;
+        }
+        let power = POWERS.get(exponent.unsigned_abs() as usize)?;
+        let value = mantissa as Self;
+        Some(if exponent < 0 { value / power } else { value * power })
+    }
+}
+
+impl Float for f32 {
+    fn negated(self) -> Self {
+        -self
+    }
+
+    fn finite(self) -> bool {
+        self.is_finite()
+    }
+
+    fn exact(mantissa: u64, exponent: i32) -> Option<Self> {
+        const POWERS: [f32; 11] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
+        if mantissa > 1 << 24 {
+            return None;
+        }
+        let power = POWERS.get(exponent.unsigned_abs() as usize)?;
+        let value = mantissa as Self;
+        Some(if exponent < 0 { value / power } else { value * power })
+    }
+}
+
+/// An integer in decimal, with an optional sign.
+pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
+    let (negative, digits) = match word {
+        [b'-', digits @ ..] => (true, digits),
+        _ => (false, word.strip_prefix(b"+").unwrap_or(word)),
+    };
+    if digits.is_empty() {
+        return None;
+    }
+    let mut value = 0i64;
+    for &byte in digits {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        value = value.checked_mul(10)?.checked_sub(i64::from(digit))?;
+    }
+    if negative { Some(value) } else { value.checked_neg() }
+}
+
+/// A floating-point number in decimal, correctly rounded; infinities and NaN are numbers here.
+///
+/// Short plain decimals, which meshes are made of, take a fast path of one multiplication or division.
+pub(super) fn parse_float<T: Float>(word: &[u8]) -> Option<T> {
+    if let Some((negative, mantissa, exponent)) = short_decimal(word) {
+        if !(negative && mantissa == 0) {
+            if let Some(value) = T::exact(mantissa, exponent) {
+                return if negative { Some(value.negated()) } else { Some(value) };
+            }
+        }
+    }
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// `±digits[.digits]` of at most 19 digits, as sign, digits and a power of ten.
+fn short_decimal(word: &[u8]) -> Option<(bool, u64, i32)> {
+    let (negative, digits) = match word {
+        [b'-', digits @ ..] => (true, digits),
+        digits => (false, digits),
+    };
+    if digits.len() > 19 {
+        return None;
+    }
+    let (mut mantissa, mut exponent, mut seen_point) = (0u64, 0, false);
+    for &byte in digits {
+        let digit = byte.wrapping_sub(b'0');
+        if digit <= 9 {
+            mantissa = 10 * mantissa + u64::from(digit);
+            exponent -= i32::from(seen_point);
+        } else if byte == b'.' && !seen_point {
+            seen_point = true;
+        } else {
+            return None;
+        }
+    }
+    (digits.len() > usize::from(seen_point)).then_some((negative, mantissa, exponent))
+}
