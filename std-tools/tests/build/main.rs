@@ -1,0 +1,11 @@
+//! The builder and the incidence graph against the definitions, against each other, and against known answers.
+
+// Test data are small.
+#![allow(clippy::cast_possible_truncation)]
+
+mod agreement;
+mod known_answers;
+mod oracle;
+mod order;
+mod samples;
+mod soups;
