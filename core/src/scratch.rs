@@ -149,9 +149,7 @@ impl<'s, I: Index> Scratch<'s, I> {
         let mut kept = 0;
         for position in 0..self.found.len {
             let Some(&id) = self.found.ids.get(position) else { break };
-            if self.mark(id.to_usize())
-                && let Some(slot) = self.found.ids.get_mut(kept)
-            {
+            if let (true, Some(slot)) = (self.mark(id.to_usize()), self.found.ids.get_mut(kept)) {
                 *slot = id;
                 kept += 1;
             }

@@ -10,7 +10,7 @@ use core::ops::Range;
 use crate::complex::{Complex, SimplexRange};
 use crate::id::{Dim, Index, SimplexId, VertexId};
 
-impl<'a, I: Index> Complex<'a, I> {
+impl<I: Index> Complex<'_, I> {
     /// The parent in the simplex tree: the face without the last vertex; `None` for a vertex, whose parent is the root.
     /// Cost: one read.
     #[must_use]
@@ -62,13 +62,13 @@ impl<'a, I: Index> Complex<'a, I> {
     ///
     /// Cost: [`find`](Self::find), then two look-ups of children a dimension.
     #[must_use]
-    pub fn with_prefix(&self, prefix: &[VertexId]) -> Descendants<'a, I> {
+    pub fn with_prefix(&self, prefix: &[VertexId]) -> Descendants<'_, I> {
         let level = match self.find(prefix) {
             _ if prefix.is_empty() => 0..self.num_vertices(),
             Some(node) => node.index()..node.index() + 1,
             None => 0..0,
         };
-        Descendants { complex: *self, next: level.clone(), level }
+        Descendants { complex: self, next: level.clone(), level }
     }
 
     /// The child of a node of dimension `dim` that ends with `vertex`.
@@ -119,7 +119,7 @@ fn partition_point(range: Range<usize>, is_before: impl Fn(usize) -> bool) -> us
 /// The descendants of a node and itself, by dimension, then lexicographically: see [`Complex::with_prefix`].
 #[derive(Clone, Debug)]
 pub struct Descendants<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     /// The descendants of one dimension: consecutive.
     level: Range<usize>,
     /// Those of them that were not handed out.

@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use sig_core::{Dim, Index, SimplexId};
 
-use crate::build::{self, Arrays, BuildError, BuildOptions, Relations, SigArrays};
+use crate::build::{self, Arrays, BuildError, BuildOptions, SigArrays};
 use crate::soup::Soup;
 
 /// An incidence graph over the canonical ids: by dimension, then lexicographic order of the sorted vertex words.
@@ -196,19 +196,13 @@ impl IncidenceGraph {
     where
         Arrays: From<SigArrays<I>>,
     {
-        let relations = self.first.windows(2).map(|range| self.relations(range[0]..range[1])).collect();
-        build::pack(self.faces::<I>(), relations)
-    }
-
-    fn relations<I: Index>(&self, simplices: std::ops::Range<usize>) -> Relations<I> {
-        let mut visited = vec![false; self.num_simplices];
-        let mut relations = Relations { starts: vec![0], entries: Vec::new() };
-        for simplex in simplices.map(SimplexId::new) {
-            let list = self.partial_coboundary(simplex, &mut visited);
-            relations.entries.extend(list.into_iter().map(|top| build::index::<I>(top.index())));
-            relations.starts.push(relations.entries.len());
-        }
-        relations
+        build::pack(self.faces::<I>(), |write| {
+            let mut visited = vec![false; self.num_simplices];
+            for simplex in (0..self.first.last().copied().unwrap_or(0)).map(SimplexId::new) {
+                let list = self.partial_coboundary(simplex, &mut visited);
+                write(&list.into_iter().map(|top| build::index(top.index())).collect::<Vec<I>>());
+            }
+        })
     }
 
     /// The arrays that the boundary relations give.

@@ -8,6 +8,7 @@ use crate::id::{Dim, Index, MAX_DIM};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Levels {
     dims: usize,
+    total: usize,
     /// `first[p]` is the first id of dimension p, and the number of simplices from p = d + 1 on.
     first: [usize; MAX_DIM + 2],
     /// The row of p-simplex σ starts at `row_shift[p] + (p + 1)·σ`, modulo the word size.
@@ -18,7 +19,7 @@ impl Levels {
     /// Reads a lookup table; `Err(p)` if the first id of dimension p is not after the one before, not 0 for p = 0, or
     /// not below the number of simplices. Also `Err` if the boundary would have more entries than a `usize` counts.
     pub(crate) fn new<I: Index>(lookup: &[I], total: usize) -> Result<Self, usize> {
-        let mut levels = Self { dims: lookup.len(), first: [total; MAX_DIM + 2], row_shift: [0; MAX_DIM + 1] };
+        let mut levels = Self { dims: lookup.len(), total, first: [total; MAX_DIM + 2], row_shift: [0; MAX_DIM + 1] };
         for (dim, (slot, first)) in levels.first.iter_mut().zip(lookup).enumerate() {
             *slot = first.to_usize();
             if (dim == 0) != (*slot == 0) || *slot >= total {
@@ -42,14 +43,14 @@ impl Levels {
         self.dims
     }
 
-    pub(crate) fn total(&self) -> usize {
-        self.start(MAX_DIM + 1)
+    pub(crate) const fn total(&self) -> usize {
+        self.total
     }
 
     /// The first id of dimension `dim`; the number of simplices past the last dimension.
     #[inline]
     pub(crate) fn start(&self, dim: Dim) -> usize {
-        self.first.get(dim).or(self.first.last()).copied().unwrap_or(0)
+        self.first.get(dim).copied().unwrap_or(self.total)
     }
 
     /// The ids of dimension `dim`.
@@ -63,6 +64,12 @@ impl Levels {
         self.dims.checked_sub(1).map_or(0, |top| self.start(top))
     }
 
+    /// The id from which on no simplex is flagged: the first of dimension d − 1.
+    #[inline]
+    pub(crate) fn flags_end(&self) -> usize {
+        self.dims.checked_sub(2).map_or(0, |dim| self.start(dim))
+    }
+
     /// The number of boundary entries: Σ (p+1) n_p for p > 0.
     pub(crate) fn num_boundary(&self) -> usize {
         (1..self.dims).map(|dim| self.ids(dim).len() * (dim + 1)).sum()
@@ -70,7 +77,8 @@ impl Levels {
 
     #[inline]
     pub(crate) fn dim_of(&self, simplex: usize) -> Option<Dim> {
-        (0..self.dims).find(|&dim| simplex < self.start(dim + 1))
+        let (_, ends) = self.first.split_first()?;
+        ends.iter().position(|&end| simplex < end)
     }
 
     /// Where the row of a simplex of dimension `dim` lies among the boundary entries. Of an id of another dimension the

@@ -130,13 +130,20 @@ impl<'a, I: Index> Complex<'a, I> {
     /// Whether the pointer of a simplex is itself the only entry of its partial co-boundary.
     #[inline]
     pub(crate) fn flag(&self, simplex: usize) -> bool {
-        simplex < self.pointers.len() && self.flags.get(simplex / 8).is_some_and(|byte| byte >> (simplex % 8) & 1 == 1)
+        simplex < self.levels.flags_end()
+            && self.flags.get(simplex / 8).is_some_and(|byte| byte >> (simplex % 8) & 1 == 1)
     }
 
     /// The pointer of a simplex of dimension below d.
     #[inline]
     pub(crate) fn pointer(&self, simplex: usize) -> Option<I> {
         self.pointers.get(simplex).copied()
+    }
+
+    /// The pointers from that of a simplex on.
+    #[inline]
+    pub(crate) fn pointers_from(&self, simplex: usize) -> &'a [I] {
+        self.pointers.get(simplex..).unwrap_or(&[])
     }
 
     /// The lists from `offset` on.

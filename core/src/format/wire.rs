@@ -79,12 +79,9 @@ pub fn swap_byte_order(bytes: &mut [u8]) -> Result<(), FormatError> {
     // Nothing below can fail: the entries were just parsed, and are swapped only after their sections.
     for number in 0..header.sections {
         let entry = Entry::parse(bytes, &header, number, from)?;
-        if let Some(size) = element_bytes(entry.element)
-            && let Some(section) = bytes.get_mut(entry.range())
-        {
-            for element in section.chunks_exact_mut(size) {
-                element.reverse();
-            }
+        let section = bytes.get_mut(entry.range()).unwrap_or_default();
+        for element in section.chunks_exact_mut(element_bytes(entry.element).unwrap_or(1)) {
+            element.reverse();
         }
     }
     RawHeader::swap(bytes, from, from.other());

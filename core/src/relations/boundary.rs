@@ -24,7 +24,7 @@ impl<'a, I: Index> Complex<'a, I> {
     ///
     /// Cost: the binomial number of faces, each about one read; constant for given p and q. Source: Algorithm 4.
     #[must_use]
-    pub fn boundary(&self, simplex: SimplexId, dim: Dim) -> Boundary<'a, I> {
+    pub fn boundary(&self, simplex: SimplexId, dim: Dim) -> Boundary<'_, I> {
         match self.dim_of(simplex) {
             Some(own) if dim < own => self.subfaces(own, simplex.index(), all_positions(own), own - dim),
             _ => self.subfaces(0, simplex.index(), 0, 1),
@@ -33,18 +33,11 @@ impl<'a, I: Index> Complex<'a, I> {
 
     /// The faces of a simplex of dimension `dim` that omit exactly `omitted` of the vertex positions in `deletable`, in
     /// the order of their ids.
-    pub(crate) fn subfaces(&self, dim: Dim, simplex: usize, deletable: u32, omitted: usize) -> Boundary<'a, I> {
+    #[inline]
+    pub(crate) fn subfaces(&self, dim: Dim, simplex: usize, deletable: u32, omitted: usize) -> Boundary<'_, I> {
         let free = deletable.count_ones() as usize;
-        Boundary {
-            complex: *self,
-            dim,
-            simplex,
-            deletable,
-            omitted,
-            path: Vec::new(),
-            left: if omitted > free { 0 } else { binomial(free, omitted) },
-            started: false,
-        }
+        let left = if omitted > free { 0 } else { binomial(free, omitted) };
+        Boundary { complex: self, dim, simplex, deletable, omitted, path: Vec::new(), left }
     }
 }
 
@@ -77,11 +70,12 @@ impl<I: Index> DoubleEndedIterator for Facets<'_, I> {
 impl<I: Index> ExactSizeIterator for Facets<'_, I> {}
 impl<I: Index> core::iter::FusedIterator for Facets<'_, I> {}
 
-/// A face on the way from a simplex down to a face of it, and the position, in the simplex, of the vertex that was
-/// deleted to reach it.
+/// A deleted vertex on the way from a simplex down to a face of it.
 #[derive(Clone, Copy, Debug)]
-struct Step {
-    face: usize,
+struct Step<'a, I> {
+    /// The facets of the face from which the vertex is deleted.
+    row: &'a [I],
+    /// The position of the vertex in the simplex.
     position: u32,
 }
 
@@ -91,14 +85,14 @@ struct Step {
 /// combination to the first.
 #[derive(Clone, Debug)]
 pub struct Boundary<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     dim: Dim,
     simplex: usize,
     deletable: u32,
     omitted: usize,
-    path: Vec<Step, MAX_DIM>,
+    /// The deletions that lead to the face that was handed out last: none before the first.
+    path: Vec<Step<'a, I>, { MAX_DIM + 1 }>,
     left: usize,
-    started: bool,
 }
 
 impl<I: Index> Boundary<'_, I> {
@@ -107,43 +101,43 @@ impl<I: Index> Boundary<'_, I> {
         self.omitted
     }
 
-    /// The face that the path ends at.
-    fn face(&self) -> usize {
-        self.path.last().map_or(self.simplex, |step| step.face)
+    /// The face that the path leads to.
+    #[inline]
+    fn face(&self) -> Option<usize> {
+        let Some(last) = self.path.last() else { return Some(self.simplex) };
+        // Each vertex deleted before moves the later ones down by one.
+        let column = last.position as usize - (self.path.len() - 1);
+        last.row.get(column).map(|face| face.to_usize())
     }
 
-    /// Deletes one more vertex, at `position` of the simplex, after all that were deleted below it.
-    fn descend(&mut self, position: u32) -> Option<()> {
-        let deleted = self.path.len();
-        let face = self.complex.facet(self.dim.checked_sub(deleted)?, self.face(), position as usize - deleted)?;
-        self.path.push(Step { face, position }).ok()
-    }
-
-    /// Deletes the last free positions until `omitted` vertices are deleted.
-    fn descend_to_end(&mut self) -> Option<()> {
+    /// Deletes the last free positions, as many as are missing.
+    fn descend(&mut self) -> Option<()> {
         let missing = self.omitted - self.path.len();
         let mut chosen = self.deletable;
         for _ in missing..chosen.count_ones() as usize {
             chosen &= chosen - 1;
         }
         while chosen != 0 {
-            self.descend(chosen.trailing_zeros())?;
+            let row = self.complex.row(self.dim.checked_sub(self.path.len())?, self.face()?);
+            self.path.push(Step { row, position: chosen.trailing_zeros() }).ok()?;
             chosen &= chosen - 1;
         }
         Some(())
     }
 
-    /// Moves to the combination of positions before this one: the last position that can move down does, and those
-    /// after it start again from the end.
-    fn step_back(&mut self) -> Option<()> {
+    /// Moves the last deletion that can move to the free position before; whether there was one.
+    #[inline]
+    fn move_down(&mut self) -> bool {
         loop {
-            let last = self.path.pop()?;
-            let floor = self.path.last().map_or(0, |step| step.position + 1);
+            let above = self.path.len().checked_sub(2).and_then(|index| self.path.get(index));
+            let floor = above.map_or(0, |step| step.position + 1);
+            let Some(last) = self.path.last_mut() else { return false };
             let lower = self.deletable & ((1 << last.position) - 1) & (u32::MAX << floor);
-            if lower != 0 {
-                self.descend(lower.ilog2())?;
-                return self.descend_to_end();
+            if let Some(position) = lower.checked_ilog2() {
+                last.position = position;
+                return true;
             }
+            self.path.pop();
         }
     }
 }
@@ -154,14 +148,15 @@ impl<I: Index> Iterator for Boundary<'_, I> {
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         self.left = self.left.checked_sub(1)?;
-        let moved = if self.started { self.step_back() } else { self.descend_to_end() };
-        self.started = true;
-        if moved.is_none() {
+        let first = self.path.is_empty();
+        let moved = first || self.move_down();
+        let complete = moved && (self.path.len() == self.omitted || self.descend().is_some());
+        let face = if complete { self.face() } else { None };
+        if face.is_none() {
             // Only in a buffer that is not a complex: a facet led nowhere.
             self.left = 0;
-            return None;
         }
-        Some(SimplexId::new(self.face()))
+        face.map(SimplexId::new)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

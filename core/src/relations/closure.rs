@@ -4,23 +4,23 @@ use super::{Boundary, all_positions};
 use crate::complex::Complex;
 use crate::id::{Dim, Index, SimplexId};
 
-impl<'a, I: Index> Complex<'a, I> {
+impl<I: Index> Complex<'_, I> {
     /// The faces of a p-simplex of all dimensions and the simplex itself, in the order of their ids.
     ///
     /// Cost: about one read a face, of 2^(p+1) − 1.
     #[must_use]
-    pub fn closure(&self, simplex: SimplexId) -> Closure<'a, I> {
+    pub fn closure(&self, simplex: SimplexId) -> Closure<'_, I> {
         let dim = self.dim_of(simplex);
         let own = dim.unwrap_or(0);
         let faces = self.subfaces(own, simplex.index(), dim.map_or(0, all_positions), own);
-        Closure { complex: *self, simplex, dim: own, faces, left: dim.map_or(0, |dim| all_positions(dim) as usize) }
+        Closure { complex: self, simplex, dim: own, faces, left: dim.map_or(0, |dim| all_positions(dim) as usize) }
     }
 }
 
 /// The faces of a simplex and itself, in the order of their ids: see [`Complex::closure`].
 #[derive(Clone, Debug)]
 pub struct Closure<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     simplex: SimplexId,
     dim: Dim,
     /// The faces of the dimension that is being walked.

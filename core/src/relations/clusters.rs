@@ -19,14 +19,14 @@ pub struct Cluster {
     pub representative: SimplexId,
 }
 
-impl<'a, I: Index> Complex<'a, I> {
+impl<I: Index> Complex<'_, I> {
     /// The clusters in the restricted star of a simplex, by decreasing dimension, then increasing representative; none
     /// for a top simplex.
     ///
     /// Cost: Σ_g κ_g(σ) + 1 reads in a row.
     #[must_use]
-    pub fn clusters(&self, simplex: SimplexId) -> Clusters<'a, I> {
-        Clusters { complex: *self, entries: self.partial_coboundary(simplex) }
+    pub fn clusters(&self, simplex: SimplexId) -> Clusters<'_, I> {
+        Clusters { complex: self, entries: self.partial_coboundary(simplex) }
     }
 
     /// The simplices of the cluster around `simplex` to which `representative`, any of its simplices, belongs; empty if
@@ -44,7 +44,10 @@ impl<'a, I: Index> Complex<'a, I> {
     ) -> Result<Simplices<'s, I>, ScratchError> {
         scratch.start(self.num_simplices())?;
         let gathered = match self.dim_of(simplex) {
-            Some(dim) if self.is_top(representative) => self.gather_cluster(simplex, dim, representative, scratch),
+            Some(dim) if self.is_top(representative) => {
+                let cluster = Cluster { dim: self.dim_of(representative).unwrap_or(0), representative };
+                self.gather_cluster(simplex, dim, cluster, scratch)
+            }
             _ => Ok(()),
         };
         scratch.unmark_queue();
@@ -52,22 +55,27 @@ impl<'a, I: Index> Complex<'a, I> {
         Ok(Simplices::new(scratch.queue.ids()))
     }
 
-    /// Appends the cluster of `start` around a p-simplex to the queue, marked, each with the mask of σ in it.
+    /// Appends a cluster around a p-simplex to the queue, marked, each simplex with the mask of σ in it.
     pub(crate) fn gather_cluster(
         &self,
         simplex: SimplexId,
         dim: Dim,
-        start: SimplexId,
+        cluster: Cluster,
         scratch: &mut Scratch<'_, I>,
     ) -> Result<(), ScratchError> {
-        let (Some(top_dim), Some(first)) = (self.dim_of(start), I::from_usize(start.index())) else { return Ok(()) };
+        let Cluster { dim: top_dim, representative } = cluster;
+        let Some(first) = I::from_usize(representative.index()) else { return Ok(()) };
+        if top_dim == dim + 1 {
+            // A cluster by itself; the one vertex that σ lacks is opposite to it.
+            let row = self.row(top_dim, representative.index());
+            let opposite = row.iter().position(|facet| facet.to_usize() == simplex.index());
+            let mask = opposite.map(|position| all_positions(top_dim) ^ 1 << position);
+            return mask.map_or(Ok(()), |mask| scratch.visit(first, mask));
+        }
         // A representative that does not contain σ: only in a buffer that is not a complex.
-        let Some(mask) = self.positions(simplex, start).filter(|_| top_dim > dim) else { return Ok(()) };
+        let Some(mask) = self.positions(simplex, representative).filter(|_| top_dim > dim) else { return Ok(()) };
         let mut head = scratch.queue.len();
         scratch.visit(first, mask)?;
-        if top_dim == dim + 1 {
-            return Ok(());
-        }
         while let Some((top, mask)) = scratch.queue.get(head) {
             head += 1;
             self.cross_facets(top, top_dim, mask, scratch)?;
@@ -87,6 +95,7 @@ impl<'a, I: Index> Complex<'a, I> {
             let Some(&facet) = row.get(position) else { continue };
             let mut entries = self.partial_coboundary(SimplexId::new(facet.to_usize()));
             while let Some(other) = entries.next_index() {
+                // `top` is marked, but most facets have it and one other: no need to look.
                 if other == top || !ids.contains(&other.to_usize()) || !scratch.mark(other.to_usize()) {
                     continue;
                 }
@@ -103,7 +112,7 @@ impl<'a, I: Index> Complex<'a, I> {
 /// The clusters around a simplex: see [`Complex::clusters`].
 #[derive(Clone, Debug)]
 pub struct Clusters<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     entries: PartialCoboundary<'a, I>,
 }
 

@@ -42,8 +42,13 @@ impl<I: Index> Complex<'_, I> {
                 // The clusters come by decreasing dimension.
                 break;
             }
+            if cluster.dim == own + 1 {
+                // The cluster is one simplex, and of dimension `dim`.
+                I::from_usize(cluster.representative.index()).map_or(Ok(()), |top| scratch.report(top))?;
+                continue;
+            }
             scratch.queue.clear();
-            let gathered = self.gather_cluster(simplex, own, cluster.representative, scratch);
+            let gathered = self.gather_cluster(simplex, own, cluster, scratch);
             // The clusters of one dimension have no simplex in common.
             scratch.unmark_queue();
             gathered?;

@@ -29,7 +29,7 @@ impl<I: Index> Complex<'_, I> {
         let Some(dim) = self.dim_of(simplex) else { return Ok(()) };
         for cluster in self.clusters(simplex) {
             scratch.queue.clear();
-            let gathered = self.gather_cluster(simplex, dim, cluster.representative, scratch);
+            let gathered = self.gather_cluster(simplex, dim, cluster, scratch);
             scratch.unmark_queue();
             gathered?;
             let mut head = 0;

@@ -12,12 +12,13 @@ impl<'a, I: Index> Complex<'a, I> {
     #[inline]
     pub fn partial_coboundary(&self, simplex: SimplexId) -> PartialCoboundary<'a, I> {
         let index = simplex.index();
-        let rest = match self.pointer(index) {
-            None => Rest::Done,
-            Some(pointer) if self.flag(index) => Rest::One(pointer),
-            Some(pointer) => Rest::List(self.lists_from(pointer.to_usize()).iter()),
+        let entries = match self.pointer(index) {
+            None => &[][..],
+            // The pointer is itself the only entry.
+            Some(_) if self.flag(index) => self.pointers_from(index).get(..1).unwrap_or(&[]),
+            Some(offset) => self.lists_from(offset.to_usize()),
         };
-        PartialCoboundary { rest }
+        PartialCoboundary { entries: entries.iter() }
     }
 
     /// C*_{p,g}(σ) for one g. Cost: as [`partial_coboundary`](Self::partial_coboundary).
@@ -52,36 +53,20 @@ impl<'a, I: Index> Complex<'a, I> {
 /// The entries of a partial co-boundary: see [`Complex::partial_coboundary`].
 #[derive(Clone, Debug)]
 pub struct PartialCoboundary<'a, I> {
-    rest: Rest<'a, I>,
-}
-
-#[derive(Clone, Debug)]
-enum Rest<'a, I> {
-    /// The pointer is the entry.
-    One(I),
-    /// A list up to its stop code.
-    List(core::slice::Iter<'a, I>),
-    Done,
+    /// What is left of the entries, and perhaps a stop code and more behind them.
+    entries: core::slice::Iter<'a, I>,
 }
 
 impl<I: Index> PartialCoboundary<'_, I> {
     /// The next entry at the width of the buffer.
     #[inline]
     pub(crate) fn next_index(&mut self) -> Option<I> {
-        match &mut self.rest {
-            Rest::List(list) => match list.next() {
-                Some(&entry) if entry != I::STOP => Some(entry),
-                _ => {
-                    self.rest = Rest::Done;
-                    None
-                }
-            },
-            Rest::One(entry) => {
-                let entry = *entry;
-                self.rest = Rest::Done;
-                Some(entry)
+        match self.entries.next() {
+            Some(&entry) if entry != I::STOP => Some(entry),
+            _ => {
+                self.entries = [].iter();
+                None
             }
-            Rest::Done => None,
         }
     }
 }

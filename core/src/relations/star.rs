@@ -67,7 +67,7 @@ impl<I: Index> Complex<'_, I> {
         }
         let tops = scratch.queue.len();
         for cluster in self.clusters(simplex) {
-            self.gather_cluster(simplex, dim, cluster.representative, scratch)?;
+            self.gather_cluster(simplex, dim, cluster, scratch)?;
         }
         let mut head = tops;
         while let Some((coface, mask)) = scratch.queue.get(head) {

@@ -1,19 +1,18 @@
 //! The vertices of a simplex: its word in the simplex tree.
 
 use crate::complex::Complex;
-use crate::id::SimplexId;
-use crate::id::{Dim, Index, VertexId};
+use crate::id::{Dim, Index, SimplexId, VertexId};
 
-impl<'a, I: Index> Complex<'a, I> {
+impl<I: Index> Complex<'_, I> {
     /// The vertices of a p-simplex, increasing; one for a vertex.
     ///
     /// Cost: the k-th vertex takes p − k reads, all p(p+1)/2; no marks, unlike B_{p,0} by Algorithm 4, which takes
     /// (p+1)! steps.
     #[must_use]
     #[inline]
-    pub fn vertices(&self, simplex: SimplexId) -> Vertices<'a, I> {
+    pub fn vertices(&self, simplex: SimplexId) -> Vertices<'_, I> {
         let dim = self.dim_of(simplex);
-        Vertices { complex: *self, rest: simplex.index(), dim: dim.unwrap_or(0), left: dim.map_or(0, |dim| dim + 1) }
+        Vertices { complex: self, rest: simplex.index(), dim: dim.unwrap_or(0), left: dim.map_or(0, |dim| dim + 1) }
     }
 
     /// The last vertex of a p-simplex. Cost: p reads, or one where the file has the last vertices.
@@ -55,7 +54,7 @@ impl<'a, I: Index> Complex<'a, I> {
 /// The vertices of a simplex, increasing: see [`Complex::vertices`].
 #[derive(Clone, Debug)]
 pub struct Vertices<'a, I> {
-    complex: Complex<'a, I>,
+    complex: &'a Complex<'a, I>,
     /// The face of the vertices that are left.
     rest: usize,
     dim: Dim,

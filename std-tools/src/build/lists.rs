@@ -1,70 +1,80 @@
 //! The partial co-boundary relations as the paper stores them: pointers, lists with stop codes, and one flag a simplex
 //! (sig-2004, 4.2).
 
-use sig_core::{Dim, Index};
+use sig_core::Index;
 
 use crate::build::{Arrays, SigArrays, index};
 
-/// The relations C\*(σ) of all simplices σ of one dimension.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub(crate) struct Relations<I> {
-    /// Where the entries of each simplex start, and the end.
-    pub(crate) starts: Vec<usize>,
-    /// Representatives of clusters, by decreasing dimension, then increasing id.
-    pub(crate) entries: Vec<I>,
-}
-
-impl<I> Relations<I> {
-    /// The entries of simplex number `simplex` of the dimension.
-    pub(crate) fn of(&self, simplex: usize) -> &[I] {
-        &self.entries[self.starts[simplex]..self.starts[simplex + 1]]
-    }
-}
-
-/// Completes `arrays` with the relations of the dimensions 0, 1, …, d − 1, at the width that the list offsets need.
-pub(crate) fn pack<I: Index>(arrays: SigArrays<I>, relations: Vec<Relations<I>>) -> Arrays
+/// Completes `arrays` with the relations, at the width that the list offsets need. `for_each_list` hands over C\*(σ),
+/// by decreasing dimension, then increasing id, for every simplex σ below dimension d in id order; it is asked twice if
+/// the width proves too small.
+pub(crate) fn pack<I: Index>(mut arrays: SigArrays<I>, for_each_list: impl Fn(&mut dyn FnMut(&[I]))) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
-    let mut len = 0;
-    for (p, relations) in relations.iter().enumerate() {
-        for simplex in 0..arrays.ids(p).len() {
-            let list = relations.of(simplex);
-            len += if is_flagged(&arrays.first, p, list) { 0 } else { list.len() + 1 };
+    let Some(lists) = Lists::<I>::write(&arrays.first, &for_each_list) else {
+        let mut arrays = arrays.widen();
+        // 64 bits are never too small.
+        if let Some(lists) = Lists::write(&arrays.first, &for_each_list) {
+            lists.put_into(&mut arrays);
         }
-    }
-    if I::from_usize(len).is_some() {
-        write(arrays, relations, len).into()
-    } else {
-        write(arrays.widen(), relations, len).into()
-    }
+        return arrays.into();
+    };
+    lists.put_into(&mut arrays);
+    arrays.into()
 }
 
-/// Whether `list`, of a p-simplex, is written as a pointer: one entry, of dimension d, and not of the next dimension.
-fn is_flagged<I: Index>(first: &[usize], p: Dim, list: &[I]) -> bool {
-    let dim = first.len() - 1;
-    p + 1 < dim && matches!(list, [top] if top.to_usize() >= first[dim])
+/// The pointers, lists and flags of the simplices so far.
+struct Lists<I> {
+    pointers: Vec<I>,
+    lists: Vec<I>,
+    flags: Vec<u8>,
 }
 
-/// Completes `arrays`; the lists take `len` entries, stop codes included.
-fn write<I: Index, J: Index>(mut arrays: SigArrays<I>, relations: Vec<Relations<J>>, len: usize) -> SigArrays<I> {
-    let Some(&num_pointers) = arrays.first.last() else { return arrays };
-    arrays.lists = Vec::with_capacity(len);
-    arrays.pointers = Vec::with_capacity(num_pointers);
-    arrays.flags = vec![0; num_pointers.div_ceil(8)];
-    for (p, relations) in relations.into_iter().enumerate() {
-        for simplex in 0..arrays.ids(p).len() {
-            let list = relations.of(simplex);
-            if is_flagged(&arrays.first, p, list) {
-                let id = arrays.pointers.len();
-                arrays.flags[id / 8] |= 1 << (id % 8);
-                arrays.pointers.push(index(list[0].to_usize()));
-            } else {
-                arrays.pointers.push(index(arrays.lists.len()));
-                arrays.lists.extend(list.iter().map(|entry| index::<I>(entry.to_usize())));
-                arrays.lists.push(I::STOP);
+impl<I: Index> Lists<I> {
+    /// Writes all lists, if the offsets fit.
+    fn write<J: Index>(first: &[usize], for_each_list: impl Fn(&mut dyn FnMut(&[J]))) -> Option<Self> {
+        let top_start = first.last().copied().unwrap_or(0);
+        // Only simplices two dimensions below the tops are flagged.
+        let flaggable = first.len().checked_sub(2).map_or(0, |facets| first[facets]);
+        let mut written =
+            Self { pointers: Vec::with_capacity(top_start), lists: Vec::new(), flags: vec![0; top_start.div_ceil(8)] };
+        for_each_list(&mut |list| written.push(list, flaggable, top_start));
+        I::from_usize(written.lists.len()).map(|_| written)
+    }
+
+    fn push<J: Index>(&mut self, list: &[J], flaggable: usize, top_start: usize) {
+        let id = self.pointers.len();
+        match list {
+            [top] if id < flaggable && top.to_usize() >= top_start => {
+                self.flags[id / 8] |= 1 << (id % 8);
+                self.pointers.push(index(top.to_usize()));
+            }
+            _ => {
+                // An offset that does not fit is found out at the end.
+                self.pointers.push(I::from_usize(self.lists.len()).unwrap_or(I::STOP));
+                self.lists.extend(list.iter().map(|top| index::<I>(top.to_usize())));
+                self.lists.push(I::STOP);
             }
         }
     }
-    arrays
+
+    fn put_into(self, arrays: &mut SigArrays<I>) {
+        arrays.pointers = self.pointers;
+        arrays.lists = self.lists;
+        arrays.flags = self.flags;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offsets_that_do_not_fit_are_noticed() {
+        let lists = |count: usize| move |write: &mut dyn FnMut(&[u32])| (0..count).for_each(|_| write(&[7]));
+        // Edges on two vertices: each list is an entry and a stop code.
+        assert!(Lists::<u16>::write(&[0, 40_000], lists(32_767)).is_some());
+        assert!(Lists::<u16>::write(&[0, 40_000], lists(32_768)).is_none());
+    }
 }

@@ -27,7 +27,7 @@ use sig_core::{Dim, Index};
 use crate::soup::{Coordinates, Labels, Soup};
 
 use limits::{Limit, Meter, Reservation};
-pub(crate) use lists::{Relations, pack};
+pub(crate) use lists::pack;
 use order::number_vertices;
 pub use report::BuildReport;
 
@@ -351,9 +351,8 @@ fn finish<I: Index>(arrays: SigArrays<I>, listed: &[Vec<u8>], meter: &Meter<'_>)
 where
     Arrays: From<SigArrays<I>>,
 {
-    let (parity, counts) = report::top_simplices(&arrays, listed);
-    let relations = clusters::find(&arrays, meter);
-    (pack(arrays, relations), parity, counts)
+    let (parity, counts, is_top) = report::top_simplices(&arrays, listed);
+    (clusters::add(arrays, &is_top, meter), parity, counts)
 }
 
 impl From<SigArrays<u32>> for Arrays {

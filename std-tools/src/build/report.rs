@@ -50,22 +50,21 @@ pub(super) struct Counts {
 }
 
 /// Finds the top simplices, all of them listed (or unused vertices, which are marked as listed); their parity bits in
-/// id order and the counts for the report. `listed[p]` holds one byte for every p-simplex, or nothing if none is
+/// id order, the counts for the report, and which simplices of each dimension are top (nothing for a dimension of which
+/// none is). `listed[p]` holds one byte for every p-simplex, or nothing if none is
 /// listed.
-pub(super) fn top_simplices<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> (Vec<u8>, Counts) {
+pub(super) fn top_simplices<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> (Vec<u8>, Counts, Vec<Vec<bool>>) {
     let mut parity = Vec::new();
     let mut num_tops = 0;
     let mut counts =
         Counts { distinct_listed: 0, non_maximal: 0, conflicting: 0, top_simplices: vec![0; arrays.first.len()] };
-    for (dim, marks) in listed.iter().enumerate() {
-        if marks.is_empty() {
-            continue;
-        }
+    let mut tops = vec![Vec::new(); arrays.first.len()];
+    for (dim, marks) in listed.iter().enumerate().filter(|(_, marks)| !marks.is_empty()) {
         let mut is_top = vec![true; marks.len()];
         for facet in arrays.facets(dim + 1) {
             is_top[facet.to_usize() - arrays.first[dim]] = false;
         }
-        for (&mark, is_top) in marks.iter().zip(is_top) {
+        for (&mark, &is_top) in marks.iter().zip(&is_top) {
             counts.distinct_listed += usize::from(mark & (EVEN | ODD) != 0);
             if !is_top {
                 counts.non_maximal += usize::from(mark & (EVEN | ODD) != 0);
@@ -81,6 +80,9 @@ pub(super) fn top_simplices<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>])
             counts.conflicting += usize::from(mark == EVEN | ODD);
             counts.top_simplices[dim] += 1;
         }
+        if counts.top_simplices[dim] > 0 {
+            tops[dim] = is_top;
+        }
     }
-    (parity, counts)
+    (parity, counts, tops)
 }

@@ -14,7 +14,7 @@ use super::Format;
 pub enum Position {
     /// The input as a whole.
     Whole,
-    /// A place in text: line and column, both from 1, the column in bytes.
+    /// A place in text: line and column, both from 1, the column in bytes (a byte order mark is not counted).
     Text {
         /// The line, from 1.
         line: u64,
@@ -57,7 +57,7 @@ pub enum ErrorKind {
     #[error("cannot read: {0}")]
     Io(#[source] io::Error),
     /// Neither the content nor the name tells the format.
-    #[error("neither the content nor the name tells the format; name it, one of: {}", names())]
+    #[error("neither the content nor the name tells the format; name it (--format), one of: {}", names())]
     UnknownFormat,
     /// Something else stands where something definite must.
     #[error("expected {expected}, found {found}")]

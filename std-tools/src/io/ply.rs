@@ -64,26 +64,28 @@ impl Type {
         !matches!(self, Self::I32 | Self::U32 | Self::F64)
     }
 
-    /// The value in [`Self::size`] bytes; every type fits double precision.
+    /// The value in the first [`Self::size`] bytes, NaN if there are fewer; every type fits double precision.
     fn decode(self, bytes: &[u8], encoding: Encoding) -> f64 {
-        let mut little = [0; 8];
-        let little = &mut little[..self.size()];
-        little.copy_from_slice(bytes);
-        if encoding == Encoding::BigEndian {
-            little.reverse();
-        }
-        match *little {
-            [a] if self == Self::I8 => f64::from(i8::from_le_bytes([a])),
-            [a] => f64::from(a),
-            [a, b] if self == Self::I16 => f64::from(i16::from_le_bytes([a, b])),
-            [a, b] => f64::from(u16::from_le_bytes([a, b])),
-            [a, b, c, d] if self == Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
-            [a, b, c, d] if self == Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-            [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
-            [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
-            _ => f64::NAN,
+        match self {
+            Self::I8 => number(bytes, encoding, i8::from_le_bytes),
+            Self::U8 => number(bytes, encoding, u8::from_le_bytes),
+            Self::I16 => number(bytes, encoding, i16::from_le_bytes),
+            Self::U16 => number(bytes, encoding, u16::from_le_bytes),
+            Self::I32 => number(bytes, encoding, i32::from_le_bytes),
+            Self::U32 => number(bytes, encoding, u32::from_le_bytes),
+            Self::F32 => number(bytes, encoding, f32::from_le_bytes),
+            Self::F64 => number(bytes, encoding, f64::from_le_bytes),
         }
     }
+}
+
+/// The number in the first `N` bytes, `from_le_bytes` being its reading in little-endian order.
+fn number<const N: usize, T: Into<f64>>(bytes: &[u8], encoding: Encoding, from_le_bytes: fn([u8; N]) -> T) -> f64 {
+    let Some(&(mut bytes)) = bytes.first_chunk::<N>() else { return f64::NAN };
+    if encoding == Encoding::BigEndian {
+        bytes.reverse();
+    }
+    from_le_bytes(bytes).into()
 }
 
 struct Property {
@@ -358,8 +360,13 @@ fn binary_row(
         }
         (list, item) = (source.offset(), size);
         row.list.clear();
-        for _ in 0..length {
-            row.list.push(integer(property.scalar.decode(source.take(size, EXPECTED)?, encoding)));
+        // In pieces: the length may be a lie.
+        let mut left = length;
+        while left > 0 {
+            let piece = left.min(1024);
+            let bytes = source.take(piece as usize * size, EXPECTED)?;
+            row.list.extend(bytes.chunks_exact(size).map(|item| integer(property.scalar.decode(item, encoding))));
+            left -= piece;
         }
     }
     Ok(Place::Bytes { row: start, list, item })

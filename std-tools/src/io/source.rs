@@ -72,6 +72,10 @@ impl<'a> Source<'a> {
             let decoder = MultiGzDecoder::new(head.chain(source.reader));
             source = Self { gzip: true, ..Self::over(Box::new(decoder), None) };
         }
+        // A byte order mark is no part of the text: it must not stick to the first word.
+        if source.peek(3)? == "\u{feff}".as_bytes() {
+            source.start += 3;
+        }
         Ok(source)
     }
 
@@ -111,7 +115,8 @@ impl<'a> Source<'a> {
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
-                    let position = Position::Byte(self.base + self.end as u64);
+                    let byte = self.base + self.end as u64;
+                    let position = if byte == 0 { Position::Whole } else { Position::Byte(byte) };
                     return Err(Fault::new(position, ErrorKind::Io(error)));
                 }
             }
@@ -244,16 +249,17 @@ impl<'a> Source<'a> {
         let mut searched = from;
         loop {
             let unread = &self.buffer[self.start..self.end];
-            if let Some(found) = unread.get(searched..).and_then(|rest| memchr::memchr(b'\n', rest)) {
-                return Ok(Some(searched + found - from));
-            }
-            searched = searched.max(unread.len());
+            let found = unread.get(searched..).and_then(|rest| memchr::memchr(b'\n', rest));
+            searched = found.map_or(unread.len().max(searched), |found| searched + found);
             if searched > MAX_LINE {
                 let position = Position::Text { line: self.lines + 1, column: MAX_LINE as u64 + 1 };
                 return Err(Fault::new(position, ErrorKind::LineTooLong { limit: MAX_LINE }));
             }
+            if found.is_some() {
+                return Ok(Some(searched - from));
+            }
             if self.exhausted {
-                return Ok((unread.len() > from).then(|| unread.len() - from));
+                return Ok((searched > from).then(|| searched - from));
             }
             self.refill()?;
         }

@@ -47,7 +47,7 @@ fn an_unknown_format_is_refused_with_the_list_of_formats() {
     assert_eq!(detected("x.docx", "1 2 3\n"), None);
     assert_eq!(detected(".obj", "1 2 3\n"), None);
     let error = read_bytes(b"1 2 3\n", "-", &ReadOptions::default()).unwrap_err().to_string();
-    let expected = "<stdin>: neither the content nor the name tells the format; name it, one of: \
+    let expected = "<stdin>: neither the content nor the name tells the format; name it (--format), one of: \
                     off, obj, ply, stl, msh, simplices";
     assert_eq!(error, expected);
 }
@@ -98,4 +98,11 @@ fn progress_counts_the_bytes_of_the_compressed_input() {
     assert_eq!(read(&bytes[..], "-", &options).unwrap().1.simplices, [0, 100_000]);
     assert_eq!(last.into_inner(), bytes.len() as u64);
     assert!(calls.into_inner() > 0);
+}
+
+#[test]
+fn a_byte_order_mark_does_not_stick_to_the_first_word() {
+    assert_eq!(detected("-", "\u{feff}OFF 0 0 0\n"), Some(Format::Off));
+    let (soup, _) = read_bytes("\u{feff}1 2\n".as_bytes(), "x.txt", &ReadOptions::default()).unwrap();
+    assert_eq!(soup.labels, crate::soup::Labels::Integers(vec![1, 2]));
 }

@@ -91,7 +91,7 @@ fn counts_are_not_trusted() {
     let huge = u64::from(u32::MAX);
     for (format, text) in [
         (Format::Off, format!("OFF {huge} {huge} 0\n0 0 0\n")),
-        (Format::Off, format!("OFF 1 9000000000000 0\n0 0 0\n1 0\n")),
+        (Format::Off, "OFF 1 9000000000000 0\n0 0 0\n1 0\n".into()),
         (Format::Off, "OFF 1 1 0\n0 0 0\n9000000000000000000 0\n".into()),
         (
             Format::Ply,
@@ -132,6 +132,19 @@ fn a_line_without_end_is_refused() {
     let options = ReadOptions { format: Some(Format::Obj), ..Default::default() };
     let error = read(b"v 0 0 0\n".chain(blanks), "test", &options).unwrap_err().to_string();
     assert_eq!(error, "test:2:16777217: a line of more than 16777216 bytes; is this a text file with line ends?");
+}
+
+#[test]
+fn a_line_may_have_the_limit_but_no_more() {
+    let line = |length: usize| {
+        let mut text = vec![b' '; length];
+        text[length - 1] = b'7';
+        text.push(b'\n');
+        read_as(Format::SimplexList, text)
+    };
+    let limit = 16 * 1024 * 1024;
+    assert_eq!(line(limit).unwrap().0.num_listed(), 1);
+    assert!(line(limit + 1).unwrap_err().to_string().starts_with("test:1:16777217: a line of more than 16777216"));
 }
 
 /// Text is longer than the buffer, lines fall across its end.

@@ -1,5 +1,6 @@
 //! Tests of the readers: real files against counts from elsewhere, then each format, then all formats together.
 
+mod agreement;
 mod detection;
 mod fixtures;
 mod hostile;
@@ -10,6 +11,7 @@ mod off;
 mod ply;
 mod simplex_list;
 mod stl;
+mod text;
 
 use std::collections::HashSet;
 
@@ -82,4 +84,14 @@ fn f_vector(soup: &Soup) -> Vec<usize> {
         counts[face.len() - 1] += 1;
     }
     counts
+}
+
+/// Numbers that look random and are the same in every run (Knuth's 64-bit linear congruential generator).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: u32) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from((self.0 >> 33) % u64::from(bound)).unwrap()
+    }
 }

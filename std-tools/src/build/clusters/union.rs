@@ -1,8 +1,5 @@
-//! The partial co-boundary relations C\*, from the facets alone.
-//!
-//! C\*(σ) names one top simplex of each cluster in the restricted star of σ (sig-2004, 4.1): the top g-simplices that
-//! contain σ, joined where they share a (g − 1)-simplex that properly contains σ. The paper walks the star of every σ
-//! ([`crate::incidence_graph`]). Here the relations of one dimension follow from those of the next:
+//! The clusters of one dimension from those of the next, by union-find: for complexes in which many top simplices share
+//! their faces, so that walking their stars would visit each face many times.
 //!
 //! A cluster of a (p+1)-simplex ρ lies in one cluster of each facet σ of ρ. So let an *item* be a triple (ρ, position of
 //! the facet σ in ρ, cluster of ρ); the clusters of σ are the classes of its items under what joins them. Two facets ρ1
@@ -16,13 +13,12 @@ use std::ops::Range;
 
 use sig_core::{Dim, Index};
 
-use crate::build::lists::Relations;
-use crate::build::{Meter, Phase, SigArrays, index};
+use crate::build::limits::Stage;
+use crate::build::{SigArrays, index};
 
 /// The relations of the dimensions 0, 1, …, d − 1.
-pub(super) fn find<I: Index>(arrays: &SigArrays<I>, meter: &Meter<'_>) -> Vec<Relations<I>> {
+pub(super) fn find<I: Index>(arrays: &SigArrays<I>, stage: &Stage<'_>) -> Vec<Relations<I>> {
     let Some(dim) = arrays.dim() else { return Vec::new() };
-    let stage = meter.stage(Phase::Coboundary, dim);
     // From dimension d downwards.
     let mut levels = vec![Clusters::of_tops(arrays.ids(dim).len())];
     let mut up = Vec::new();
@@ -39,6 +35,26 @@ pub(super) fn find<I: Index>(arrays: &SigArrays<I>, meter: &Meter<'_>) -> Vec<Re
         stage.add(1);
     }
     levels.drain(1..).rev().map(|clusters| clusters.relations).collect()
+}
+
+/// The relations C\*(σ) of all simplices σ of one dimension.
+pub(super) struct Relations<I> {
+    /// Where the entries of each simplex start, and the end.
+    starts: Vec<usize>,
+    /// Representatives of clusters, by decreasing dimension, then increasing id.
+    entries: Vec<I>,
+}
+
+impl<I> Relations<I> {
+    /// The entries of simplex number `simplex` of the dimension.
+    fn of(&self, simplex: usize) -> &[I] {
+        &self.entries[self.starts[simplex]..self.starts[simplex + 1]]
+    }
+
+    /// The entries of every simplex.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[I]> {
+        self.starts.windows(2).map(|range| &self.entries[range[0]..range[1]])
+    }
 }
 
 /// The clusters of the simplices of one dimension q. They are the entries of the relation, except that those of
