@@ -1,0 +1,89 @@
+//! Simplices by the labels that the user's data give to vertices, and back.
+
+use sig_core::complex::columns::Labels;
+use sig_core::{Complex, Index, SimplexId, VertexId};
+
+/// Why labels are not those of a simplex.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FindError {
+    /// No vertex has this label.
+    #[error("there is no vertex '{label}'")]
+    UnknownVertex {
+        /// The label.
+        label: String,
+    },
+    /// A label stands twice.
+    #[error("vertex '{label}' is named twice")]
+    RepeatedVertex {
+        /// The label.
+        label: String,
+    },
+    /// The vertices exist, but do not span a simplex.
+    #[error("the vertices {labels} do not span a simplex")]
+    UnknownSimplex {
+        /// The labels, separated by commas.
+        labels: String,
+    },
+}
+
+/// The label of a vertex; `#` and its number if the file has none that can be read.
+#[must_use]
+pub fn vertex_label<I: Index>(complex: &Complex<'_, I>, vertex: VertexId) -> String {
+    match complex.labels().get(vertex) {
+        Some(label) => label.to_string(),
+        None => format!("#{vertex}"),
+    }
+}
+
+/// The labels of the vertices of a simplex, by increasing vertex.
+#[must_use]
+pub fn simplex_labels<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) -> Vec<String> {
+    complex.vertices(simplex).map(|vertex| vertex_label(complex, vertex)).collect()
+}
+
+/// The labels of the vertices of a simplex, separated by commas.
+#[must_use]
+pub fn simplex_name<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) -> String {
+    simplex_labels(complex, simplex).join(",")
+}
+
+/// The vertex with a label.
+///
+/// Cost: O(1) where vertices are called by their numbers; else one pass over the labels.
+#[must_use]
+pub fn find_vertex<I: Index>(complex: &Complex<'_, I>, label: &str) -> Option<VertexId> {
+    let vertices = || (0..complex.num_vertices()).map(VertexId::new);
+    match complex.labels() {
+        Labels::Numbered => {
+            let vertex = label.parse().ok().map(VertexId::new)?;
+            (vertex.index() < complex.num_vertices()).then_some(vertex)
+        }
+        Labels::Integers(labels) => {
+            let label: u64 = label.parse().ok()?;
+            labels.iter().position(|&other| other == label).map(VertexId::new)
+        }
+        labels @ Labels::Text { .. } => {
+            let label = sig_core::complex::columns::Label::Text(label);
+            vertices().find(|&vertex| labels.get(vertex) == Some(label))
+        }
+    }
+}
+
+/// The simplex whose vertices have the given labels, in any order.
+///
+/// # Errors
+/// [`FindError`], naming the label or labels that are to blame.
+pub fn find_simplex<I: Index>(complex: &Complex<'_, I>, labels: &[&str]) -> Result<SimplexId, FindError> {
+    let mut vertices = Vec::with_capacity(labels.len());
+    for &label in labels {
+        let unknown = || FindError::UnknownVertex { label: label.to_owned() };
+        let vertex = find_vertex(complex, label).ok_or_else(unknown)?;
+        if vertices.contains(&vertex) {
+            return Err(FindError::RepeatedVertex { label: label.to_owned() });
+        }
+        vertices.push(vertex);
+    }
+    vertices.sort_unstable();
+    complex.find(&vertices).ok_or_else(|| FindError::UnknownSimplex { labels: labels.join(",") })
+}
