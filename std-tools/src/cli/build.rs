@@ -261,7 +261,7 @@ impl Input {
         note(self.welded_corners, "corners welded to one at the same place");
         note(self.inner_nodes_dropped, "nodes dropped that lie inside elements of higher order");
         if self.ignored > 0 {
-            eprintln!("       {} parts ignored: {}", grouped(self.ignored), self.ignored_names.join(", "));
+            eprintln!("       ignored {} times: {}", grouped(self.ignored), self.ignored_names.join(", "));
         }
     }
 }
@@ -302,7 +302,8 @@ impl Report {
         }
         let total: usize = self.simplices.iter().sum();
         let counts: Vec<_> = self.simplices.iter().map(grouped).collect();
-        eprintln!("built  dimension {}, {} simplices: {}", self.dimension, grouped(total), counts.join(" + "));
+        eprint!("built  dimension {}, {} simplices", self.dimension, grouped(total));
+        eprintln!("{}{}", if counts.is_empty() { "" } else { ": " }, counts.join(" + "));
         note(self.repeated, "simplices merged that repeat another");
         note(self.non_maximal, "simplices merged that are faces of others");
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");

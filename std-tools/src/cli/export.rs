@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use sig_core::with_complex;
 use sig_tools::export::{self, ExportError, Format};
@@ -45,7 +46,8 @@ impl Args {
         output::check(path, existing)?;
         let input = Input::open(&self.file, Access::Normal)?;
         let complex = input.complex();
-        with_complex!(complex, complex => export::check(&complex, format))?;
+        with_complex!(complex, complex => export::check(&complex, format))
+            .with_context(|| self.file.display().to_string())?;
         let mut notes = Vec::new();
         output::to_path(path, existing, |out| {
             notes =
