@@ -110,6 +110,10 @@ impl<I: Index> Complex<'_, I> {
     #[must_use]
     pub fn cluster_counts(&self, dim: Dim) -> ClusterCounts {
         let mut counts = ClusterCounts { by_dim: [0; MAX_DIM + 1], single_cluster: 0, tops: 0 };
+        if self.dim() == Some(dim) {
+            // Nothing is stored for them; there may be more than the buffer has bytes.
+            return ClusterCounts { tops: self.num_simplices_of_dim(dim), ..counts };
+        }
         for simplex in self.simplices_of_dim(dim) {
             let mut any = false;
             for cluster in self.clusters(simplex) {
@@ -139,8 +143,9 @@ impl<I: Index> Complex<'_, I> {
                 let clusters = self.cluster_counts(dim);
                 storage.pointers += count;
                 storage.general_lists += clusters.total() + count;
-                // A flagged simplex has one cluster: its entry and stop code are not there.
-                storage.lists += clusters.total() + count - 2 * clusters.single_cluster;
+                // A flagged simplex has one cluster: its entry and stop code are not there. (In a buffer that is not a
+                // complex it may have none.)
+                storage.lists += (clusters.total() + count).saturating_sub(2 * clusters.single_cluster);
             }
         }
         storage

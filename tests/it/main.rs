@@ -1,1 +1,13 @@
-//! One binary for all tests that cross crates.
+//! One binary for all tests that cross crates: a module is about one behaviour.
+
+mod builder;
+mod format;
+mod fuzz_corpus;
+mod golden;
+mod hostile;
+mod known_triangulations;
+mod paper_figures;
+mod relations;
+mod rules;
+mod scratch;
+mod storage;

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use crate::id::{Dim, Index, MAX_DIM};
+use crate::relations::binomial;
 
 /// First ids and row offsets of the dimensions, unpacked once so that a query finds them without a search.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +18,9 @@ pub(crate) struct Levels {
 
 impl Levels {
     /// Reads a lookup table; `Err(p)` if the first id of dimension p is not after the one before, not 0 for p = 0, or
-    /// not below the number of simplices. Also `Err` if the boundary would have more entries than a `usize` counts.
+    /// not below the number of simplices, or if there are fewer p-simplices than a d-simplex has: so no simplex has more
+    /// faces than there are simplices, whatever the arrays say. Also `Err` if the boundary would have more entries than a
+    /// `usize` counts.
     pub(crate) fn new<I: Index>(lookup: &[I], total: usize) -> Result<Self, usize> {
         let mut levels = Self { dims: lookup.len(), total, first: [total; MAX_DIM + 2], row_shift: [0; MAX_DIM + 1] };
         for (dim, (slot, first)) in levels.first.iter_mut().zip(lookup).enumerate() {
@@ -36,7 +39,11 @@ impl Levels {
             }
             rows = count.checked_mul(dim + 1).and_then(|entries| rows.checked_add(entries)).ok_or(dim)?;
         }
-        if levels.dims == 0 && total != 0 { Err(0) } else { Ok(levels) }
+        if levels.dims == 0 && total != 0 {
+            return Err(0);
+        }
+        let too_few = |&dim: &Dim| levels.ids(dim).len() < binomial(levels.dims, dim + 1);
+        (0..levels.dims).find(too_few).map_or(Ok(levels), Err)
     }
 
     pub(crate) const fn dims(&self) -> usize {

@@ -32,8 +32,8 @@ impl<'a, I: Index> Complex<'a, I> {
         if header.width != I::WIDTH {
             return Err(FormatError::WrongWidth { found: header.width, expected: I::WIDTH });
         }
-        // An id more than the buffer has bytes for is refused here, so that the sums below cannot overflow.
-        let total = usize::try_from(header.num_simplices).ok().filter(|&total| total <= container.bytes().len());
+        let total = usize::try_from(header.num_simplices).ok();
+        let total = total.filter(|&total| isize::try_from(total).is_ok() && fits::<I>(total));
         let first_ids = |element: usize| FormatError::Invalid {
             section: SectionKind::Lookup,
             element: element as u64,
@@ -57,6 +57,11 @@ impl<'a, I: Index> Complex<'a, I> {
         sections.check_columns(&levels)?;
         Ok(complex)
     }
+}
+
+/// Whether the ids of `total` simplices are indices of the width.
+fn fits<I: Index>(total: usize) -> bool {
+    total.checked_sub(1).is_none_or(|last| I::from_usize(last).is_some())
 }
 
 /// Sections by kind, with the shapes that the format asks for.
@@ -140,6 +145,7 @@ impl<'a> Sections<'_, 'a> {
                 SectionKind::LabelText | SectionKind::Provenance => (matches!(column, Column::U8(_)), None),
                 SectionKind::Coordinates => (matches!(column, Column::F32(_) | Column::F64(_)), vector_len(vertices)),
                 SectionKind::Parity => (matches!(column, Column::Bits { .. }), None),
+                SectionKind::Checksums => (matches!(column, Column::U32(_)), None),
                 SectionKind::Filtration => (matches!(column, Column::F64(_)), Some(levels.total())),
                 SectionKind::Attribute => (true, section.dim.and_then(|dim| vector_len(levels.ids(dim).len()))),
                 _ => (true, None),

@@ -109,11 +109,12 @@ impl<'a> Blocks<'a> {
         Ok(blocks)
     }
 
-    fn sections(&self) -> impl Iterator<Item = (SectionKind, Option<Dim>, Range<usize>)> + use<'a> {
-        self.container.spans_in(ByteOrder::Little).filter(|(kind, ..)| *kind != SectionKind::Checksums)
+    /// The sections that have checksums; a file of a newer minor version may have some of unknown kinds.
+    fn sections(&self) -> impl Iterator<Item = (Option<SectionKind>, Option<Dim>, Range<usize>)> + use<'a> {
+        self.container.all_spans_in(ByteOrder::Little).filter(|(kind, ..)| *kind != Some(SectionKind::Checksums))
     }
 
-    /// The blocks, in the order of the file.
+    /// The blocks of the sections of known kinds, in the order of the file.
     pub fn iter(&self) -> impl Iterator<Item = ChecksumBlock<'a>> + use<'a> {
         let bytes = self.container.bytes();
         let checksums = self.checksums.start;
@@ -125,12 +126,14 @@ impl<'a> Blocks<'a> {
                 })
             })
             .enumerate()
-            .map(move |(number, (section, dim, range))| ChecksumBlock {
-                section,
-                dim,
-                offset: range.start,
-                bytes: bytes.get(range).unwrap_or_default(),
-                stored: get_u32(bytes, checksums + 4 * number, ByteOrder::Little),
+            .filter_map(move |(number, (section, dim, range))| {
+                Some(ChecksumBlock {
+                    section: section?,
+                    dim,
+                    offset: range.start,
+                    bytes: bytes.get(range).unwrap_or_default(),
+                    stored: get_u32(bytes, checksums + 4 * number, ByteOrder::Little),
+                })
             })
     }
 }
@@ -138,8 +141,9 @@ impl<'a> Blocks<'a> {
 /// Checks every byte of a file against its checksums: header, table, padding and sections. The file is taken as it lies
 /// on disk, little-endian on every host.
 ///
-/// Finds every change of a single bit, and says in which section. It does not check that the contents are a complex:
-/// see [`Complex::validate`](crate::Complex::validate). Cost: one pass, with [`crc32`].
+/// Finds every change of a single bit, and says in which section. It passes over sections of unknown kinds in a file of a
+/// newer minor version. It does not check that the contents are a complex: see
+/// [`Complex::validate`](crate::Complex::validate). Cost: one pass, with [`crc32`].
 ///
 /// # Errors
 /// The first thing that is wrong, and where; [`FormatError::NoChecksums`] if the file has none.

@@ -145,7 +145,7 @@ impl RawHeader {
 
 /// Bytes of the header and of a table of so many entries.
 pub(super) fn table_bytes(sections: u32) -> usize {
-    HEADER_BYTES + (sections as usize).saturating_mul(ENTRY_BYTES)
+    (sections as usize).saturating_mul(ENTRY_BYTES).saturating_add(HEADER_BYTES)
 }
 
 /// The next multiple of [`SECTION_ALIGN`]; `None` past the largest.
@@ -338,7 +338,8 @@ impl<'a> Container<'a> {
         Self::parse(bytes, ByteOrder::Little)
     }
 
-    fn parse(bytes: &'a [u8], order: ByteOrder) -> Result<Self, FormatError> {
+    /// Checks header and table in either byte order.
+    pub(super) fn parse(bytes: &'a [u8], order: ByteOrder) -> Result<Self, FormatError> {
         let header = Header::parse(bytes, order)?;
         let mut end = table_bytes(header.sections) as u64;
         let mut previous = None;
@@ -401,8 +402,15 @@ impl<'a> Container<'a> {
         &self,
         order: ByteOrder,
     ) -> impl Iterator<Item = (SectionKind, Option<Dim>, Range<usize>)> + use<'a> {
-        self.entries(order)
-            .filter_map(|entry| Some((SectionKind::from_code(entry.code)?, dim_of(entry.dim), entry.range())))
+        self.all_spans_in(order).filter_map(|(kind, dim, range)| Some((kind?, dim, range)))
+    }
+
+    /// The same with the sections of unknown kinds.
+    pub(super) fn all_spans_in(
+        &self,
+        order: ByteOrder,
+    ) -> impl Iterator<Item = (Option<SectionKind>, Option<Dim>, Range<usize>)> + use<'a> {
+        self.entries(order).map(|entry| (SectionKind::from_code(entry.code), dim_of(entry.dim), entry.range()))
     }
 
     /// Checks that the bytes between the sections are zero.

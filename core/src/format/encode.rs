@@ -34,8 +34,8 @@ pub enum EncodeError {
         /// The section.
         section: SectionKind,
     },
-    /// The number of components is zero or does not divide the number of elements, or the dimension is not one of the
-    /// complex.
+    /// The number of components is zero or does not divide the number of elements, the dimension is not one of the
+    /// complex, or the bytes of a column of bits are not as many as the bits take.
     Shape {
         /// The section.
         section: SectionKind,
@@ -50,7 +50,7 @@ impl fmt::Display for EncodeError {
             Self::Dimension => write!(f, "a dimension of more than {MAX_DIM}"),
             Self::Order { section } => write!(f, "section '{section}' is out of order"),
             Self::Name { section } => write!(f, "section '{section}': bad name"),
-            Self::Shape { section } => write!(f, "section '{section}': components or dimension do not fit"),
+            Self::Shape { section } => write!(f, "section '{section}': components, dimension or bytes do not fit"),
         }
     }
 }
@@ -111,7 +111,9 @@ impl<'a> Encoder<'a> {
                 return Err(EncodeError::Name { section: kind });
             }
             let components = section.components as usize;
-            if components == 0
+            let ragged = matches!(section.column, Column::Bits { bytes, len } if bytes.len() != len.div_ceil(8));
+            if ragged
+                || components == 0
                 || section.column.len() % components != 0
                 || section.dim.is_some_and(|dim| dim >= self.header.dims)
             {

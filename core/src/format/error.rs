@@ -143,7 +143,8 @@ pub enum TableError {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum Rule {
-    /// The first ids of the dimensions start at 0 and increase strictly, up to the number of simplices.
+    /// The first ids of the dimensions start at 0 and increase strictly, up to the number of simplices, of which there are
+    /// at least as many of each dimension as a simplex of the highest has.
     FirstIds,
     /// A boundary entry is a simplex of the dimension below.
     FacetRange,
@@ -239,7 +240,9 @@ impl fmt::Display for TableError {
 impl fmt::Display for Rule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::FirstIds => "the first ids of the dimensions do not start at 0 and increase",
+            Self::FirstIds => {
+                "the first ids of the dimensions do not start at 0 and increase, by as much as one simplex takes"
+            }
             Self::FacetRange => "a facet is not a simplex of the dimension below",
             Self::SemiSimplicial => "facets of facets do not agree (semi-simplicial identity)",
             Self::CanonicalOrder => "simplices are not in canonical order",

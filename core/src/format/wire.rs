@@ -1,6 +1,6 @@
 //! Integers in headers, and byte order: the one place that turns bytes into integers one at a time.
 
-use super::container::{Entry, Header, RawHeader, table_bytes};
+use super::container::{Container, Entry, RawHeader, table_bytes};
 use super::section::element_bytes;
 use super::{ENTRY_BYTES, FormatError, HEADER_BYTES};
 
@@ -72,11 +72,8 @@ integers! {
 pub fn swap_byte_order(bytes: &mut [u8]) -> Result<(), FormatError> {
     let native = RawHeader::byte_order(bytes)? == ByteOrder::NATIVE;
     let from = if native { ByteOrder::NATIVE } else { ByteOrder::NATIVE.other() };
-    let header = Header::parse(bytes, from)?;
-    for number in 0..header.sections {
-        Entry::parse(bytes, &header, number, from)?;
-    }
-    // Nothing below can fail: the entries were just parsed, and are swapped only after their sections.
+    let header = *Container::parse(bytes, from)?.header();
+    // Nothing below can fail: the sections lie apart from the table, and its entries are swapped after them.
     for number in 0..header.sections {
         let entry = Entry::parse(bytes, &header, number, from)?;
         let section = bytes.get_mut(entry.range()).unwrap_or_default();

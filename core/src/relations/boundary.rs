@@ -167,8 +167,8 @@ impl<I: Index> Iterator for Boundary<'_, I> {
 impl<I: Index> ExactSizeIterator for Boundary<'_, I> {}
 impl<I: Index> core::iter::FusedIterator for Boundary<'_, I> {}
 
-/// n over k, for n ≤ 32: at most 601,080,390.
-fn binomial(n: usize, k: usize) -> usize {
+/// n over k, for k ≤ n ≤ 32: at most 601,080,390.
+pub(crate) fn binomial(n: usize, k: usize) -> usize {
     let k = k.min(n - k);
     let exact = (0..k as u64).fold(1u64, |product, i| product * (n as u64 - i) / (i + 1));
     usize::try_from(exact).unwrap_or(usize::MAX)

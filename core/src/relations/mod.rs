@@ -16,6 +16,7 @@ mod partial;
 mod star;
 mod vertices;
 
+pub(crate) use boundary::binomial;
 pub use boundary::{Boundary, Facets};
 pub use closure::Closure;
 pub use clusters::{Cluster, Clusters};

@@ -67,16 +67,19 @@ impl<I: Index> Iterator for Vertices<'_, I> {
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         self.left = self.left.checked_sub(1)?;
-        let vertex = self.complex.first_vertex(self.dim, self.rest);
+        let Some(vertex) = self.complex.first_vertex(self.dim, self.rest) else {
+            // Only in a buffer that is not a complex: a facet led nowhere.
+            self.left = 0;
+            return None;
+        };
         if self.left > 0 {
             match self.complex.facet(self.dim, self.rest, 0) {
                 Some(rest) => self.rest = rest,
-                // Only in a buffer that is not a complex: a facet led nowhere.
                 None => self.left = 0,
             }
             self.dim -= 1;
         }
-        vertex.map(VertexId::new)
+        Some(VertexId::new(vertex))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

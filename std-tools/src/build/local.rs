@@ -54,21 +54,14 @@ impl Level {
     }
 }
 
-/// The part of a listed word that follows v.
-struct Tail {
-    /// Where its letters start and end.
-    start: usize,
-    end: usize,
-    /// [`EVEN`] or [`ODD`] if v is the first vertex of the word, else 0.
-    mark: u8,
-}
-
-/// A node and a tail that goes on below it.
+/// A node, and the part of a tail that goes on below it.
 struct Visit {
     node: u32,
-    tail: u32,
-    /// Where in the letters the tail goes on.
+    /// Where in the letters the part starts and ends.
     next: u32,
+    end: u32,
+    /// How the listed simplex is listed whose word is that of the node and all of the part; 0 if there is none.
+    mark: u8,
 }
 
 /// The nodes of one level.
@@ -86,10 +79,13 @@ struct Nodes {
 #[derive(Default)]
 pub(super) struct Local {
     neighbours: Vec<u32>,
+    names: Names,
     /// The letters of all tails.
     letters: Vec<u32>,
-    tails: Vec<Tail>,
+    /// For each of them the bits of it and of those that follow in its tail, where there are few enough neighbours.
+    masks: Vec<u64>,
     nodes: Vec<Nodes>,
+    /// First the tails below v, then what is left of them below the nodes of one level.
     visits: Vec<Visit>,
     next_visits: Vec<Visit>,
     keys: Vec<u64>,
@@ -101,9 +97,9 @@ impl Local {
     /// Takes in one tail of the next vertex to be [added](Self::add_vertex): increasing vertices, and the mark of the
     /// listed simplex if the vertex is its first.
     pub(super) fn push_tail(&mut self, tail: &[u32], mark: u8) {
-        let start = self.letters.len();
+        let next = narrow(self.letters.len());
         self.letters.extend_from_slice(tail);
-        self.tails.push(Tail { start, end: self.letters.len(), mark });
+        self.visits.push(Visit { node: 0, next, end: narrow(self.letters.len()), mark });
     }
 
     /// Appends one vertex and all faces of which it is the least, given the tails pushed since the last call.
@@ -116,9 +112,6 @@ impl Local {
         reservation: &mut Reservation<'_>,
     ) -> Result<(), BuildError> {
         self.name_letters();
-        self.visits.clear();
-        let starts = self.tails.iter().zip(0..).filter(|(tail, _)| tail.start < tail.end);
-        self.visits.extend(starts.map(|(tail, number)| Visit { node: 0, tail: number, next: narrow(tail.start) }));
         self.bases.clear();
         self.bases.push(level(levels, 0).first_child.len());
         node_level(&mut self.nodes, 0).letters.resize(1, 0);
@@ -146,38 +139,56 @@ impl Local {
             dim += 1;
         }
         self.letters.clear();
-        self.tails.clear();
+        self.visits.clear();
         Ok(())
     }
 
     /// Replaces the vertices in the tails by their positions among all of them.
     fn name_letters(&mut self) {
+        self.names.clear(self.letters.len());
         self.neighbours.clear();
-        self.neighbours.extend_from_slice(&self.letters);
-        self.neighbours.sort_unstable();
-        self.neighbours.dedup();
         for letter in &mut self.letters {
-            *letter = narrow(self.neighbours.partition_point(|&vertex| vertex < *letter));
+            let slot = self.names.slot(*letter);
+            if self.names.slots[slot].0 == ABSENT {
+                self.names.slots[slot].0 = *letter;
+                self.neighbours.push(*letter);
+            }
+            *letter = narrow(slot);
+        }
+        self.neighbours.sort_unstable();
+        for (&vertex, letter) in self.neighbours.iter().zip(0..) {
+            let slot = self.names.slot(vertex);
+            self.names.slots[slot].1 = letter;
+        }
+        for letter in &mut self.letters {
+            *letter = self.names.slots[*letter as usize].1;
+        }
+        self.masks.clear();
+        if self.neighbours.len() <= MASK_BITS {
+            self.masks.resize(self.letters.len(), 0);
+            for visit in &self.visits {
+                let mut mask = 0;
+                for position in (visit.next as usize..visit.end as usize).rev() {
+                    mask |= 1 << self.letters[position];
+                    self.masks[position] = mask;
+                }
+            }
         }
     }
 
     /// Finds the children of the nodes of level `dim` from the visits: how many, their letters, and where the children
     /// of each node start.
     fn find_children(&mut self, dim: usize) -> usize {
-        let by_mask = self.neighbours.len() <= MASK_BITS;
         node_level(&mut self.nodes, dim + 1);
         let [here, below] = &mut self.nodes[dim..dim + 2] else { unreachable!("two levels") };
         here.masks.clear();
         here.first_child.clear();
         here.first_child.push(0);
         below.letters.clear();
-        if by_mask {
+        if self.neighbours.len() <= MASK_BITS {
             here.masks.resize(here.letters.len(), 0);
             for visit in &self.visits {
-                let end = self.tails[visit.tail as usize].end;
-                for letter in &self.letters[visit.next as usize..end] {
-                    here.masks[visit.node as usize] |= 1 << letter;
-                }
+                here.masks[visit.node as usize] |= self.masks[visit.next as usize];
             }
             for mut mask in here.masks.iter().copied() {
                 while mask != 0 {
@@ -187,18 +198,7 @@ impl Local {
                 here.first_child.push(narrow(below.letters.len()));
             }
         } else {
-            self.keys.clear();
-            for visit in &self.visits {
-                let end = self.tails[visit.tail as usize].end;
-                let letters = &self.letters[visit.next as usize..end];
-                self.keys.extend(letters.iter().map(|&letter| u64::from(visit.node) << 32 | u64::from(letter)));
-            }
-            if self.keys.len() >= PARALLEL_SORT {
-                self.keys.par_sort_unstable();
-            } else {
-                self.keys.sort_unstable();
-            }
-            self.keys.dedup();
+            sort_children(&mut self.keys, &self.visits, &self.letters);
             let mut keys = self.keys.iter().copied().peekable();
             for node in 0..here.letters.len() as u64 {
                 while let Some(key) = keys.next_if(|key| key >> 32 == node) {
@@ -214,14 +214,13 @@ impl Local {
     fn push_facets(&self, levels: &mut [Level], dim: usize) {
         let base = narrow(self.bases[dim]);
         let [here, below] = &mut levels[dim..dim + 2] else { unreachable!("two levels") };
-        let nodes = &self.nodes[dim];
+        let (nodes, letters) = (&self.nodes[dim], &self.nodes[dim + 1].letters);
+        let lower_base = dim.checked_sub(1).map_or(0, |lower| narrow(self.bases[lower]));
+        below.facets.reserve(letters.len() * (dim + 1));
         for (node, range) in nodes.first_child.windows(2).enumerate() {
-            let row = (self.bases[dim] + node) * dim;
-            for &letter in &self.nodes[dim + 1].letters[range[0] as usize..range[1] as usize] {
-                for i in 0..dim {
-                    let facet = here.facets[row + i] - narrow(self.bases[dim - 1]);
-                    below.facets.push(base + self.child(dim - 1, facet, letter));
-                }
+            let facets = &here.facets[(self.bases[dim] + node) * dim..][..dim];
+            for &letter in &letters[range[0] as usize..range[1] as usize] {
+                below.facets.extend(facets.iter().map(|facet| base + self.child(dim - 1, facet - lower_base, letter)));
                 below.facets.push(base + narrow(node));
             }
         }
@@ -245,26 +244,72 @@ impl Local {
     fn descend(&mut self, levels: &mut [Level], dim: usize) {
         let mut next_visits = std::mem::take(&mut self.next_visits);
         next_visits.clear();
-        for visit in &self.visits {
-            let tail = &self.tails[visit.tail as usize];
-            for position in visit.next as usize..tail.end {
-                let child = self.child(dim, visit.node, self.letters[position]);
-                if position + 1 < tail.end {
-                    next_visits.push(Visit { node: child, tail: visit.tail, next: narrow(position + 1) });
-                } else if tail.mark != 0 && position - tail.start == dim {
-                    // No letter of the tail was left out on the way here.
-                    levels[dim + 1].mark(self.bases[dim + 1] + child as usize, tail.mark);
-                }
+        for &Visit { node, next, end, mark } in &self.visits {
+            for position in next..end.max(1) - 1 {
+                let node = self.child(dim, node, self.letters[position as usize]);
+                // The others leave out a letter of the tail.
+                let mark = if position == next { mark } else { 0 };
+                next_visits.push(Visit { node, next: position + 1, end, mark });
+            }
+            if next + 1 == end && mark != 0 {
+                let child = self.child(dim, node, self.letters[next as usize]);
+                levels[dim + 1].mark(self.bases[dim + 1] + child as usize, mark);
             }
         }
         self.next_visits = std::mem::replace(&mut self.visits, next_visits);
     }
 }
 
+/// Fills `keys` with the pairs (node, letter of a child) of the visits, each once, in order.
+fn sort_children(keys: &mut Vec<u64>, visits: &[Visit], letters: &[u32]) {
+    keys.clear();
+    for visit in visits {
+        let letters = &letters[visit.next as usize..visit.end as usize];
+        keys.extend(letters.iter().map(|&letter| u64::from(visit.node) << 32 | u64::from(letter)));
+    }
+    if keys.len() >= PARALLEL_SORT {
+        keys.par_sort_unstable();
+    } else {
+        keys.sort_unstable();
+    }
+    keys.dedup();
+}
+
 /// The lower 32 bits.
 #[expect(clippy::cast_possible_truncation)]
 fn low_half(key: u64) -> u32 {
     key as u32
+}
+
+/// What stands in an empty slot; no vertex id is as large.
+const ABSENT: u32 = u32::MAX;
+
+/// A hash table from vertices to letters, by linear probing. It lives for a vertex, and is as small as that needs.
+#[derive(Default)]
+struct Names {
+    slots: Vec<(u32, u32)>,
+    shift: u32,
+}
+
+impl Names {
+    /// Empties the table and makes room for `count` vertices.
+    fn clear(&mut self, count: usize) {
+        let bits = (2 * count).next_power_of_two().trailing_zeros().max(1);
+        self.shift = 64 - bits;
+        self.slots.clear();
+        self.slots.resize(1 << bits, (ABSENT, 0));
+    }
+
+    /// The slot of a vertex, or the empty one where it goes.
+    fn slot(&self, vertex: u32) -> usize {
+        // Multiplication by 2^64 over the golden ratio spreads consecutive ids.
+        let hash = u64::from(vertex).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mut slot = usize::try_from(hash >> self.shift).unwrap_or(0);
+        while self.slots[slot].0 != vertex && self.slots[slot].0 != ABSENT {
+            slot = (slot + 1) & (self.slots.len() - 1);
+        }
+        slot
+    }
 }
 
 /// The level of dimension `dim`, made if it is not there.

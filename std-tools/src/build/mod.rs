@@ -292,6 +292,11 @@ pub(crate) fn sorted_words(soup: &Soup, options: &BuildOptions<'_>) -> Result<Ve
 /// [`BuildError`]: a soup that is malformed, or a complex that is larger than `options` or memory allow. The size is
 /// bounded from below before anything is allocated, and the bound is sharpened while faces are found.
 pub fn build(soup: Soup, options: &BuildOptions<'_>) -> Result<Built, BuildError> {
+    build_up_to(soup, options, u32::STOP as usize - 1)
+}
+
+/// Builds with 32-bit indices if there are up to `most_narrow` simplices.
+fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Result<Built, BuildError> {
     let used = words::check(&soup.simplices, soup.labels.len())?;
     let limit = Limit::new(&soup, options)?;
     let meter = Meter::new(options.progress);
@@ -303,7 +308,7 @@ pub fn build(soup: Soup, options: &BuildOptions<'_>) -> Result<Built, BuildError
     let listed_vertices = words::listed_vertices(&words, &used, &order);
     let chunks = levels::find(&words, order.num_vertices(), listed_vertices, &limit, &meter)?;
     drop(words);
-    let (arrays, parity, counts) = if chunks.num_simplices() <= u32::MAX as usize - 2 {
+    let (arrays, parity, counts) = if chunks.num_simplices() <= most_narrow {
         let (skeleton, listed) = assemble::assemble::<u32>(chunks, &meter);
         finish(skeleton, &listed, &meter)
     } else {
@@ -364,5 +369,24 @@ impl From<SigArrays<u32>> for Arrays {
 impl From<SigArrays<u64>> for Arrays {
     fn from(arrays: SigArrays<u64>) -> Self {
         Self::Wide(arrays)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Complexes that need 64-bit indices are too large for a test, so these are forced.
+    #[test]
+    fn wide_arrays_equal_narrow_ones() {
+        let mut soup = Soup::new(Labels::Numbered(9), true);
+        for simplex in [&[0, 1, 2, 3][..], &[0, 4, 1, 5], &[0, 1, 6], &[7, 6]] {
+            soup.push(simplex);
+        }
+        let narrow = build(soup.clone(), &BuildOptions::default()).expect("a good soup");
+        let wide = build_up_to(soup, &BuildOptions::default(), 0).expect("a good soup");
+        assert!(matches!((&narrow.arrays, &wide.arrays), (Arrays::Narrow(_), Arrays::Wide(_))));
+        assert_eq!(narrow.arrays.into_wide(), wide.arrays.into_wide());
+        assert_eq!(narrow.parity, wide.parity);
     }
 }

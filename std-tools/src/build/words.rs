@@ -1,14 +1,13 @@
 //! Listed simplices as sorted words of vertex ids, with the parity that sorting takes away.
 
-use rayon::prelude::*;
 use sig_core::{Dim, MAX_DIM};
 
 use crate::build::local::{EVEN, ODD, UNUSED};
 use crate::build::order::Order;
 use crate::build::{BuildError, Meter, Phase};
 
-/// Rows that one task sorts.
-const ROWS: usize = 1 << 14;
+/// Rows that are sorted at a time.
+const ROWS: usize = 1 << 10;
 
 /// Ends a word that sorts the listed vertices by an even permutation. No vertex id is as large, see [`check`].
 const EVEN_END: u32 = u32::MAX - 1;
@@ -71,26 +70,37 @@ pub(super) fn check(simplices: &[Vec<u32>], count: usize) -> Result<Vec<bool>, B
     Ok(used)
 }
 
-/// Rewrites every listed simplex as its word.
+/// Rewrites every listed simplex as its word; words stand by first vertex, so that the simplices around a vertex are near
+/// each other however the input orders them.
 pub(super) fn sort(simplices: Vec<Vec<u32>>, order: &Order, meter: &Meter<'_>) -> Result<Words, BuildError> {
     let num_listed = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).sum();
     let stage = meter.stage(Phase::Words, num_listed);
-    let mut flat = vec![0; simplices.iter().map(Vec::len).sum::<usize>() + num_listed];
-    let mut rest = flat.as_mut_slice();
+    // Where the words of each first vertex start. Shifted by one, so that filling in moves each start to where it belongs.
+    let mut starts = vec![0_usize; order.num_vertices() + 2];
+    for (dim, flat) in simplices.iter().enumerate() {
+        for row in flat.chunks_exact(dim + 1) {
+            let first = row.iter().map(|&vertex| order.id(vertex)).min().unwrap_or(0);
+            starts[first as usize + 2] += dim + 2;
+        }
+    }
+    for vertex in 2..starts.len() {
+        starts[vertex] += starts[vertex - 1];
+    }
+    let mut flat = vec![0; starts[order.num_vertices() + 1]];
+    let mut words = vec![0; (MAX_DIM + 2) * ROWS];
     for (dim, simplices) in simplices.into_iter().enumerate() {
-        let words = rest.split_off_mut(..simplices.len() / (dim + 1) * (dim + 2)).unwrap_or_default();
-        let repeated = words
-            .par_chunks_mut((dim + 2) * ROWS)
-            .zip(simplices.par_chunks((dim + 1) * ROWS))
-            .enumerate()
-            .filter_map(|(task, (words, rows))| {
-                let repeated = sort_rows(words, rows, dim, order);
-                stage.add(rows.len() / (dim + 1));
-                repeated.map(|(row, id)| (task * ROWS + row, id))
-            })
-            .min();
-        if let Some((index, id)) = repeated {
-            return Err(BuildError::RepeatedVertex { dim, index, vertex: order.input(id) });
+        for (task, rows) in simplices.chunks((dim + 1) * ROWS).enumerate() {
+            if let Some((row, id)) = sort_rows(&mut words, rows, dim, order) {
+                let index = task * ROWS + row;
+                return Err(BuildError::RepeatedVertex { dim, index, vertex: order.input(id) });
+            }
+            let count = rows.len() / (dim + 1);
+            for word in words.chunks_exact(dim + 2).take(count) {
+                let next = &mut starts[word[0] as usize + 1];
+                flat[*next..*next + dim + 2].copy_from_slice(word);
+                *next += dim + 2;
+            }
+            stage.add(count);
         }
     }
     Ok(Words { flat })

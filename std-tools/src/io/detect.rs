@@ -67,5 +67,11 @@ fn suggested(head: &[u8]) -> Option<Format> {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         words.next() == Some(b"v") && words.clone().count() >= 3
     };
-    (lines().any(is_vertex) && lines().take(16).all(|line| obj::is_keyword(first_word(line)))).then_some(Format::Obj)
+    if lines().any(is_vertex) && lines().take(16).all(|line| obj::is_keyword(first_word(line))) {
+        return Some(Format::Obj);
+    }
+    // Words could be anything, but rows of nothing but whole numbers are a list of simplices.
+    let is_row = |line: &[u8]| line.iter().all(|byte| byte.is_ascii_digit() || matches!(byte, b' ' | b'\t' | b','));
+    let numbers = |line: &[u8]| is_row(line.split(|&byte| byte == b'#').next().unwrap_or(&[]));
+    (!line.is_empty() && lines().all(numbers)).then_some(Format::SimplexList)
 }

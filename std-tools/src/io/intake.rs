@@ -109,15 +109,26 @@ impl Intake {
         self.simplices[dim].extend_from_slice(vertices);
     }
 
-    /// The vertex numbers of all simplices, with repetitions.
-    pub(super) fn vertices(&self) -> impl Iterator<Item = u32> {
-        self.simplices.iter().flatten().copied()
+    /// Whether each of `count` vertices lies in a simplex.
+    pub(super) fn used(&self, count: usize) -> Vec<bool> {
+        let mut used = vec![false; count];
+        for &vertex in self.simplices.iter().flatten() {
+            used[vertex as usize] = true;
+        }
+        used
     }
 
-    /// Gives every vertex number `v` of the simplices the number `renumbered[v]`.
-    pub(super) fn renumber(&mut self, renumbered: &[u32]) {
+    /// Numbers the vertices anew when only those that stay are left; all vertices of simplices must stay.
+    pub(super) fn renumber(&mut self, stays: &[bool]) {
+        let mut left = 0;
+        let mut number = |&stays: &bool| {
+            let number = left;
+            left += u32::from(stays);
+            number
+        };
+        let numbers: Vec<u32> = stays.iter().map(&mut number).collect();
         for vertex in self.simplices.iter_mut().flatten() {
-            *vertex = renumbered[*vertex as usize];
+            *vertex = numbers[*vertex as usize];
         }
     }
 

@@ -1,8 +1,9 @@
 //! OFF, the Object File Format of Geomview: `OFF`, counts, one vertex a line, one face a line.
 //!
 //! Read with colours (`COFF`), normals (`NOFF`), texture coordinates (`STOFF`), homogeneous coordinates (`4OFF`) and
-//! points of any dimension (`nOFF`); faces of 1, 2, 3, n vertices are points, edges, triangles, polygons. Comments
-//! run from `#` to the end of the line. Binary OFF is not read.
+//! points of any dimension (`nOFF`); a colour of 3 or 4 numbers after the coordinates is passed over even where the
+//! keyword does not announce it, and so is whatever follows the vertices of a face. Faces of 1, 2, 3, n vertices are
+//! points, edges, triangles, polygons. Comments run from `#` to the end of the line. Binary OFF is not read.
 
 use super::error::{ErrorKind, Fault};
 use super::intake::{Intake, reserve};

@@ -6,7 +6,7 @@
 
 use super::error::{ErrorKind, Fault};
 use super::intake::Intake;
-use super::labels::LabelTable;
+use super::labels::{LabelTable, canonical};
 use super::source::{Source, truncated};
 use super::text::{Line, Word};
 use super::{Format, ReadOptions, ReadReport};
@@ -25,6 +25,10 @@ pub(super) fn opens_brackets(line: &[u8]) -> bool {
     (name == 0 || assigned) && value.first().map_or(assigned, |&first| first == b'[')
 }
 
+fn is_comma(byte: u8) -> bool {
+    byte == b','
+}
+
 /// A list as far as it is read.
 struct List {
     labels: LabelTable,
@@ -36,13 +40,12 @@ struct List {
 impl List {
     /// Adds a label to the simplex at hand.
     fn label(&mut self, word: Word<'_>, line: &Line<'_>) -> Result<(), Fault> {
-        let Ok(label) = std::str::from_utf8(word.bytes) else {
-            return Err(line.unexpected(word, "a vertex label in UTF-8"));
+        let vertex = match (canonical(word.bytes), std::str::from_utf8(word.bytes)) {
+            (Some(integer), _) => self.labels.number_integer(integer),
+            (None, Ok(label)) => self.labels.number(label),
+            (None, Err(_)) => return Err(line.unexpected(word, "a vertex label in UTF-8")),
         };
-        match self.labels.number(label) {
-            Some(vertex) => self.simplex.push(vertex),
-            None => return Err(line.fault(word.at, ErrorKind::TooManyVertices)),
-        }
+        self.simplex.push(vertex.ok_or_else(|| line.fault(word.at, ErrorKind::TooManyVertices))?);
         Ok(())
     }
 
@@ -56,10 +59,10 @@ impl List {
     /// Reads one simplex from one line.
     fn line(&mut self, mut line: Line<'_>) -> Result<(), Fault> {
         let mut start = None;
-        while let Some(word) = line.part(b",") {
+        while let Some(word) = line.part(is_comma) {
             if word.bytes == b"," {
                 // A comma separates like a blank, but not nothing from something.
-                let separates = start.is_some() && line.clone().part(b",").is_none_or(|next| next.bytes != b",");
+                let separates = start.is_some() && line.clone().part(is_comma).is_none_or(|next| next.bytes != b",");
                 if !separates {
                     return Err(line.unexpected(word, "a vertex label before the comma"));
                 }
@@ -109,7 +112,7 @@ impl State {
 
 /// Reads the lists in brackets of one line.
 fn bracket_line(list: &mut List, state: &mut State, mut line: Line<'_>) -> Result<(), Fault> {
-    while let Some(word) = line.part(b"[],;") {
+    while let Some(word) = line.part(|byte| matches!(byte, b'[' | b']' | b',' | b';')) {
         *state = match (*state, word.bytes) {
             (State::Before, b"[") => State::Open,
             (State::Open | State::AfterSimplex, b"]") => State::Closed,
@@ -157,5 +160,14 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
             return Err(truncated(source.end_of_text(), state.expected()));
         }
     }
-    Ok(list.intake.finish(list.labels.into_labels(), false, None))
+    let List { labels, mut intake, .. } = list;
+    let labels = if intake.report.degenerate_dropped > 0 {
+        // Nothing declares a label that only dropped simplices used.
+        let used = intake.used(labels.len());
+        intake.renumber(&used);
+        labels.into_labels_that(&used)
+    } else {
+        labels.into_labels()
+    };
+    Ok(intake.finish(labels, false, None))
 }

@@ -3,9 +3,7 @@
 //! Corners with equal coordinates (bit for bit, −0 being +0) are one vertex; vertices are numbered by first
 //! appearance. Normals, names and attributes are passed over.
 
-use std::collections::HashMap;
-
-use foldhash::fast::RandomState;
+use hashbrown::HashMap;
 
 use super::error::{ErrorKind, Fault, Position};
 use super::intake::Intake;
@@ -41,7 +39,7 @@ fn keyword_is(line: &[u8], keyword: &[u8]) -> bool {
 
 /// Corners welded into vertices.
 struct Weld {
-    numbers: HashMap<[u32; 3], u32, RandomState>,
+    numbers: HashMap<[u32; 3], u32>,
     values: Vec<f32>,
     welded: usize,
 }

@@ -80,11 +80,11 @@ impl<'a> Line<'a> {
         (self.at > at).then(|| Word { bytes: &self.bytes[at..self.at], at })
     }
 
-    /// The next word, where each of the bytes `marks` is a word of its own.
-    pub(super) fn part(&mut self, marks: &[u8]) -> Option<Word<'a>> {
+    /// The next word, where each byte that is a mark is a word of its own.
+    pub(super) fn part(&mut self, is_mark: impl Fn(u8) -> bool) -> Option<Word<'a>> {
         self.skip_blanks();
         let at = self.at;
-        self.skip_while(|byte| !is_blank(byte) && !marks.contains(&byte));
+        self.skip_while(|byte| !is_blank(byte) && !is_mark(byte));
         if self.at == at && at < self.bytes.len() {
             self.at += 1;
         }

@@ -17,15 +17,15 @@ use sig_core::{Dim, Index};
 use crate::build::limits::Stage;
 use crate::build::{SigArrays, index};
 
-/// The relations, as found.
-pub(super) struct Minima<I> {
+/// The relations, as found. Ids are stored as `I`, links as `L`.
+pub(super) struct Minima<I, L> {
     first: Vec<usize>,
     /// The least local minimum of the largest dimension at each simplex below dimension d − 1; the stop code if none.
     representatives: Vec<I>,
     /// What else is in the list of a simplex, by simplex.
     others: Vec<Minimum<I>>,
-    /// The top cofacets of the simplices of each dimension.
-    cofacets: Vec<Cofacets<I>>,
+    /// How the top simplices of each dimension, from 1, hang together.
+    links: Vec<Links<L>>,
 }
 
 /// A local minimum at a face.
@@ -38,61 +38,70 @@ struct Minimum<I> {
     mask: u32,
 }
 
-/// The top cofacets of the simplices of one dimension; empty if there are none at all.
-struct Cofacets<I> {
-    starts: Vec<usize>,
-    entries: Vec<I>,
+/// The top simplices of one dimension g around each facet, as rings by increasing number. A link is the number of a top
+/// simplex among the g-simplices, and the position of the facet in it, in [`link_bits`] bits.
+struct Links<L> {
+    /// The next around the facet, for each top simplex and position.
+    next: Vec<L>,
+    /// The last around each (g − 1)-simplex; the stop code if it is in no top g-simplex. Empty if none is.
+    last: Vec<L>,
 }
 
-impl<I> Cofacets<I> {
-    fn of(&self, simplex: usize) -> &[I] {
-        match self.starts.get(simplex..simplex + 2) {
-            Some(&[start, end]) => &self.entries[start..end],
-            _ => &[],
-        }
-    }
+/// Bits that a position in a simplex of dimension `dim` takes.
+fn link_bits(dim: Dim) -> u32 {
+    (dim + 1).next_power_of_two().trailing_zeros()
+}
+
+/// The number of links that the simplices of dimension `dim` have room for, at most.
+pub(super) fn num_links<I: Index>(arrays: &SigArrays<I>) -> usize {
+    (0..arrays.first.len()).map(|dim| arrays.ids(dim).len() << link_bits(dim)).max().unwrap_or(0)
 }
 
 /// The relations of all simplices below dimension d. `is_top[p]` tells which p-simplices are top, or is empty.
-pub(super) fn find<I: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>], stage: &Stage<'_>) -> Minima<I> {
+pub(super) fn find<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>], stage: &Stage<'_>) -> Minima<I, L> {
     let rows: Vec<&[I]> = (0..arrays.first.len()).map(|dim| arrays.facets(dim)).collect();
     let below = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
     let mut minima = Minima {
         first: arrays.first.clone(),
         representatives: vec![I::STOP; below],
         others: Vec::new(),
-        cofacets: Vec::new(),
+        links: (1..arrays.first.len()).map(|_| Links { next: Vec::new(), last: Vec::new() }).collect(),
     };
-    minima
-        .cofacets
-        .resize_with(arrays.first.len().saturating_sub(1), || Cofacets { starts: Vec::new(), entries: Vec::new() });
     for dim in (1..arrays.first.len()).rev() {
         if is_top[dim].iter().any(|&is_top| is_top) {
             minima.add_dim(dim, &rows, &is_top[dim], arrays.ids(dim - 1).len());
         }
         stage.add(1);
     }
-    minima.join(&rows);
+    minima.join();
     minima
 }
 
-impl<I: Index> Minima<I> {
+impl<I: Index, L: Index> Minima<I, L> {
     /// Takes in the top simplices of dimension `dim`; the larger ones are there already. There are `num_facets`
     /// simplices in the dimension below.
     fn add_dim(&mut self, dim: Dim, rows: &[&[I]], is_top: &[bool], num_facets: usize) {
-        let mut cofacets = Cofacets { starts: vec![0; num_facets + 2], entries: Vec::new() };
-        let facet_start = self.first[dim - 1];
-        let tops = || rows[dim].chunks_exact(dim + 1).zip(self.first[dim]..).zip(is_top).filter(|&(_, &is_top)| is_top);
+        let (facet_start, top_start, bits) = (self.first[dim - 1], self.first[dim], link_bits(dim));
+        let mut links = Links { next: vec![L::STOP; is_top.len() << bits], last: vec![L::STOP; num_facets] };
         let mut faces = Faces { first: &self.first, rows, stack: Vec::new() };
         let (representatives, others) = (&mut self.representatives, &mut self.others);
-        for ((facets, top), _) in tops() {
+        for ((number, facets), _) in
+            rows[dim].chunks_exact(dim + 1).enumerate().zip(is_top).filter(|(_, is_top)| **is_top)
+        {
             let mut shared = 0;
             for (i, facet) in facets.iter().enumerate() {
-                let count = &mut cofacets.starts[facet.to_usize() - facet_start + 2];
-                shared |= u32::from(*count > 0) << i;
-                *count += 1;
+                let last = &mut links.last[facet.to_usize() - facet_start];
+                let link = index(number << bits | i);
+                let next = if *last == L::STOP {
+                    link
+                } else {
+                    shared |= 1 << i;
+                    std::mem::replace(&mut links.next[last.to_usize()], link)
+                };
+                links.next[link.to_usize()] = next;
+                *last = link;
             }
-            let top = index(top);
+            let top = index(top_start + number);
             faces.for_each_above(top, dim, shared, |face, mask| {
                 let representative = &mut representatives[face.to_usize()];
                 if *representative == I::STOP {
@@ -102,30 +111,17 @@ impl<I: Index> Minima<I> {
                 }
             });
         }
-        for facet in 2..cofacets.starts.len() {
-            cofacets.starts[facet] += cofacets.starts[facet - 1];
-        }
-        // Shifted by one, so that filling in moves each start to where it belongs.
-        cofacets.entries = vec![I::ZERO; cofacets.starts[num_facets + 1]];
-        for ((facets, top), _) in tops() {
-            for facet in facets {
-                let next = &mut cofacets.starts[facet.to_usize() - facet_start + 1];
-                cofacets.entries[*next] = index(top);
-                *next += 1;
-            }
-        }
-        cofacets.starts.pop();
-        self.cofacets[dim - 1] = cofacets;
+        self.links[dim - 1] = links;
     }
 
     /// Sorts the other minima by face, and strikes out those in the cluster of another.
-    fn join(&mut self, rows: &[&[I]]) {
+    fn join(&mut self) {
         // Stable, so that at each face they stay by decreasing dimension, then increasing id.
         let mut others = std::mem::take(&mut self.others);
         others.par_sort_by_key(|minimum| minimum.face);
         let mut groups: Vec<&mut [Minimum<I>]> = others.chunk_by_mut(|a, b| a.face == b.face).collect();
         groups.par_iter_mut().for_each_init(
-            || Walk { rows, minima: &*self, visited: Vec::new(), queue: Vec::new() },
+            || Walk { minima: &*self, visited: Vec::new(), queue: Vec::new() },
             |walk, group| walk.join_at_face(group),
         );
         drop(groups);
@@ -137,6 +133,7 @@ impl<I: Index> Minima<I> {
         let mut others = self.others.iter().peekable();
         let mut list = Vec::new();
         for (dim, range) in self.first.windows(2).enumerate() {
+            let (links, bits) = (&self.links[dim], link_bits(dim + 1));
             for id in range[0]..range[1] {
                 list.clear();
                 list.extend(self.representatives.get(id).filter(|&&top| top != I::STOP));
@@ -145,7 +142,14 @@ impl<I: Index> Minima<I> {
                         list.push(other.top);
                     }
                 }
-                list.extend_from_slice(self.cofacets[dim].of(id - range[0]));
+                if let Some(&last) = links.last.get(id - range[0]).filter(|&&last| last != L::STOP) {
+                    let mut link = last;
+                    while {
+                        link = links.next[link.to_usize()];
+                        list.push(index(range[1] + (link.to_usize() >> bits)));
+                        link != last
+                    } {}
+                }
                 write(&list);
             }
         }
@@ -190,16 +194,15 @@ impl<I: Index> Faces<'_, I> {
 }
 
 /// Walks clusters from top simplex to top simplex.
-struct Walk<'a, I> {
-    rows: &'a [&'a [I]],
-    minima: &'a Minima<I>,
+struct Walk<'a, I, L> {
+    minima: &'a Minima<I, L>,
     /// A bit for each simplex of the dimension, all clear between the walks.
     visited: Vec<u64>,
-    /// The top simplices met, and the positions of the vertices of the face in them.
-    queue: Vec<(I, u32)>,
+    /// The numbers of the top simplices met, and the positions of the vertices of the face in them.
+    queue: Vec<(usize, u32)>,
 }
 
-impl<I: Index> Walk<'_, I> {
+impl<I: Index, L: Index> Walk<'_, I, L> {
     /// Strikes out the minima at a face that are in the cluster of a lesser one. `group` holds all but the first.
     fn join_at_face(&mut self, group: &mut [Minimum<I>]) {
         let Some(minimum) = group.first() else { return };
@@ -227,64 +230,60 @@ impl<I: Index> Walk<'_, I> {
     /// Walks the cluster of `start`, strikes out those of `later` that it meets, and tells whether it meets `least`. Stops
     /// when all of these are met.
     fn walk(&mut self, dim: Dim, start: Minimum<I>, least: Option<I>, later: &mut [Minimum<I>]) -> bool {
-        let (first, facet_first) = (self.minima.first[dim], self.minima.first[dim - 1]);
-        let rows = self.rows[dim];
-        let cofacets = &self.minima.cofacets[dim - 1];
         let mut left = later.iter().filter(|minimum| minimum.mask != 0).count() + usize::from(least.is_some());
-        let mut meets_least = false;
         if left == 0 {
             return false;
         }
-        self.visited.resize(self.visited.len().max(rows.len() / (dim + 1) / 64 + 1), 0);
+        let (first, bits) = (self.minima.first[dim], link_bits(dim));
+        let links = &self.minima.links[dim - 1].next;
+        let all = u32::MAX >> (31 - dim);
+        let mut meets_least = false;
+        self.visited.resize(self.visited.len().max((links.len() >> bits) / 64 + 1), 0);
         self.queue.clear();
-        self.queue.push((start.top, start.mask));
-        let bit = |top: I| ((top.to_usize() - first) / 64, 1_u64 << ((top.to_usize() - first) % 64));
-        let (word, mask) = bit(start.top);
-        self.visited[word] |= mask;
+        self.queue.push((start.top.to_usize() - first, start.mask));
+        self.visited[self.queue[0].0 / 64] |= 1 << (self.queue[0].0 % 64);
         let mut next = 0;
-        while left > 0
-            && let Some(&(top, mask)) = self.queue.get(next)
-        {
+        while let Some(&(number, mask)) = self.queue.get(next).filter(|_| left > 0) {
             next += 1;
-            let row = (top.to_usize() - first) * (dim + 1);
             // The facets that leave out a vertex of the face do not contain it.
-            for i in (0..=dim).filter(|i| mask >> i & 1 == 0) {
-                let facet = rows[row + i];
-                for &neighbour in cofacets.of(facet.to_usize() - facet_first) {
-                    let (word, bit) = bit(neighbour);
-                    if self.visited[word] & bit != 0 {
-                        continue;
-                    }
-                    self.visited[word] |= bit;
-                    self.queue
-                        .push((neighbour, cross(mask, i, &rows[(neighbour.to_usize() - first) * (dim + 1)..], facet)));
-                    if least == Some(neighbour) {
-                        meets_least = true;
-                        left -= 1;
-                    } else if let Ok(met) = later.binary_search_by_key(&neighbour, |minimum| minimum.top) {
-                        later[met].mask = 0;
-                        left -= 1;
-                    }
+            let mut free = all & !mask;
+            while free != 0 {
+                let i = free.trailing_zeros();
+                free &= free - 1;
+                // Only the next around the facet: the others are met from there.
+                let link = links[number << bits | i as usize].to_usize();
+                let neighbour = link >> bits;
+                let (word, bit) = (&mut self.visited[neighbour / 64], 1 << (neighbour % 64));
+                if *word & bit != 0 {
+                    continue;
+                }
+                *word |= bit;
+                self.queue.push((neighbour, insert_bit(remove_bit(mask, i), link & ((1 << bits) - 1))));
+                let top = index(first + neighbour);
+                if least == Some(top) {
+                    meets_least = true;
+                    left -= 1;
+                } else if let Ok(met) = later.binary_search_by_key(&top, |minimum| minimum.top) {
+                    later[met].mask = 0;
+                    left -= 1;
                 }
             }
         }
-        for &(top, _) in &self.queue {
-            self.visited[bit(top).0] = 0;
+        for &(number, _) in &self.queue {
+            self.visited[number / 64] = 0;
         }
         meets_least
     }
 }
 
-/// Takes positions in a simplex, which avoid `i`, through its facet `i` to a simplex whose facets start with `row`.
-fn cross<I: Index>(mask: u32, i: usize, row: &[I], facet: I) -> u32 {
-    let in_facet = remove_bit(mask, i);
-    let j = row.iter().position(|&other| other == facet).unwrap_or(0);
-    let low = (1_u32 << j) - 1;
-    (in_facet & low) | (in_facet & !low) << 1
+/// Shifts the bits from `position` on up by one.
+fn insert_bit(mask: u32, position: usize) -> u32 {
+    let low = (1_u32 << position) - 1;
+    (mask & low) | (mask & !low) << 1
 }
 
 /// Removes the bit `i` and shifts those above down.
-fn remove_bit(mask: u32, i: usize) -> u32 {
+fn remove_bit(mask: u32, i: u32) -> u32 {
     let low = (1_u32 << i) - 1;
     (mask & low) | (mask >> 1 & !low)
 }

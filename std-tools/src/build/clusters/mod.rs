@@ -27,10 +27,69 @@ where
     let num_tops = |tops: &Vec<bool>| tops.iter().filter(|&&is_top| is_top).count();
     let pairs = is_top.iter().enumerate().map(|(dim, tops)| num_tops(tops).saturating_mul(2 << dim));
     if pairs.fold(0, usize::saturating_add) / MANY_FACES <= arrays.num_simplices {
-        let relations = minima::find(&arrays, is_top, &stage);
-        pack(arrays, |write| relations.for_each_list(write))
+        if u32::from_usize(minima::num_links(&arrays)).is_some() {
+            let minima = minima::find::<I, u32>(&arrays, is_top, &stage);
+            pack(arrays, |write| minima.for_each_list(write))
+        } else {
+            let minima = minima::find::<I, u64>(&arrays, is_top, &stage);
+            pack(arrays, |write| minima.for_each_list(write))
+        }
     } else {
         let relations = union::find(&arrays, &stage);
         pack(arrays, |write| relations.iter().flat_map(union::Relations::iter).for_each(&mut *write))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::build::{BuildOptions, build};
+    use crate::soup::{Labels, Soup};
+
+    /// The lists by local minima.
+    fn by_minima<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> Vec<Vec<usize>> {
+        let mut lists = Vec::new();
+        let meter = Meter::new(None);
+        let minima = minima::find::<I, L>(arrays, is_top, &meter.stage(Phase::Coboundary, 0));
+        minima.for_each_list(&mut |list| lists.push(list.iter().map(|top| top.to_usize()).collect()));
+        lists
+    }
+
+    /// The lists by union-find.
+    fn by_union<I: Index>(arrays: &SigArrays<I>) -> Vec<Vec<usize>> {
+        let meter = Meter::new(None);
+        let relations = union::find(arrays, &meter.stage(Phase::Coboundary, 0));
+        let lists = relations.iter().flat_map(union::Relations::iter);
+        lists.map(|list| list.iter().map(|top| top.to_usize()).collect()).collect()
+    }
+
+    proptest! {
+        /// Both ways, whichever the size of the complex suggests, at every width.
+        #[test]
+        fn both_ways_agree(simplices in prop::collection::vec(prop::collection::vec(0_u32..12, 1..8), 0..14)) {
+            let mut soup = Soup::new(Labels::Numbered(12), true);
+            for mut simplex in simplices {
+                simplex.sort_unstable();
+                simplex.dedup();
+                soup.push(&simplex);
+            }
+            let Ok(Arrays::Narrow(arrays)) = build(soup, &BuildOptions::default()).map(|built| built.arrays) else {
+                panic!("a small complex");
+            };
+            let mut is_top: Vec<Vec<bool>> =
+                (0..arrays.first.len()).map(|dim| vec![true; arrays.ids(dim).len()]).collect();
+            for dim in 1..arrays.first.len() {
+                for facet in arrays.facets(dim) {
+                    is_top[dim - 1][facet.to_usize() - arrays.first[dim - 1]] = false;
+                }
+            }
+            let expected = by_union(&arrays);
+            prop_assert_eq!(by_minima::<_, u32>(&arrays, &is_top), expected.clone());
+            let wide = arrays.widen();
+            prop_assert_eq!(by_minima::<_, u64>(&wide, &is_top), expected.clone());
+            prop_assert_eq!(by_union(&wide), expected);
+        }
     }
 }

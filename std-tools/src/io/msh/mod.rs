@@ -86,14 +86,14 @@ impl Mesh {
     /// The soup of the vertices that are left without inner nodes.
     fn finish(mut self) -> (Soup, ReadReport) {
         if !self.inner.is_empty() {
-            self.inner.resize(self.nodes.len(), false);
-            for corner in self.intake.vertices() {
-                self.inner[corner as usize] = false;
+            let mut stays = self.intake.used(self.nodes.len());
+            // A node that nothing uses at all was declared all the same.
+            for (stays, inner) in stays.iter_mut().zip(self.inner.iter().chain(std::iter::repeat(&false))) {
+                *stays |= !inner;
             }
-            let inner = &self.inner;
-            let renumbered = self.nodes.retain(|node| !inner[node]);
-            self.intake.renumber(&renumbered);
-            self.intake.report.inner_nodes_dropped = inner.iter().filter(|&&inner| inner).count();
+            self.intake.report.inner_nodes_dropped = stays.iter().filter(|&&stays| !stays).count();
+            self.intake.renumber(&stays);
+            self.nodes.retain(&stays);
         }
         let (tags, values) = self.nodes.into_parts();
         let numbered = tags.iter().zip(0u64..).all(|(&tag, number)| tag == number);

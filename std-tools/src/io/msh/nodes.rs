@@ -86,22 +86,12 @@ impl Nodes {
         }
     }
 
-    /// Leaves out nodes; gives the new number of each node that stays, by its old number.
-    pub(super) fn retain(&mut self, stays: impl Fn(usize) -> bool) -> Vec<u32> {
-        let mut renumbered = Vec::with_capacity(self.tags.len());
-        let mut next = 0u32;
-        for node in 0..self.tags.len() {
-            renumbered.push(next);
-            if stays(node) {
-                let to = next as usize;
-                self.tags[to] = self.tags[node];
-                self.values.copy_within(3 * node..3 * node + 3, 3 * to);
-                next += 1;
-            }
-        }
-        self.tags.truncate(next as usize);
-        self.values.truncate(3 * next as usize);
-        renumbered
+    /// Leaves out the nodes that do not stay; the way from tags to numbers is lost.
+    pub(super) fn retain(&mut self, stays: &[bool]) {
+        let mut each = stays.iter();
+        self.tags.retain(|_| each.next() == Some(&true));
+        let mut scalars = stays.iter().flat_map(|stays| [stays; 3]);
+        self.values.retain(|_| scalars.next() == Some(&true));
     }
 
     /// The tags and the coordinates.

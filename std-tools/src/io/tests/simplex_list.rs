@@ -92,9 +92,13 @@ fn errors_and_their_places() {
 }
 
 #[test]
-fn degenerate_simplices_are_dropped_and_counted() {
-    let (soup, report) = read_dropping(Format::SimplexList, "1 2 1\n2 3\n4 4\n");
+fn degenerate_simplices_are_dropped_and_counted_with_the_labels_that_only_they_use() {
+    let (soup, report) = read_dropping(Format::SimplexList, "1 2 1\n2 3\n4 4\n5 3\n");
     assert_eq!(report.degenerate_dropped, 2);
-    assert_eq!(listed(&soup, 1), [[1, 2]]);
-    assert_eq!(report.simplices, [0, 1]);
+    assert_eq!(soup.labels, Labels::Integers(vec![2, 3, 5]));
+    assert_eq!(listed(&soup, 1), [[0, 1], [2, 1]]);
+    assert_eq!((report.vertices, report.simplices), (3, vec![0, 2]));
+    let (soup, _) = read_dropping(Format::SimplexList, "[[a,b,a],[b,c]]");
+    assert_eq!(soup.labels, tokens(&["b", "c"]));
+    assert_eq!(listed(&soup, 1), [[0, 1]]);
 }

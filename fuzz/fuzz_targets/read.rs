@@ -1,0 +1,4 @@
+//! Any bytes as an input whose format is found by its content.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| sig_tests::fuzz::read(None, bytes));

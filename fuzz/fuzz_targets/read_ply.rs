@@ -1,0 +1,4 @@
+//! Any bytes as an input in PLY.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| sig_tests::fuzz::read(Some(sig_tests::fuzz::Format::Ply), bytes));

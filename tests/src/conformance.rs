@@ -1,0 +1,235 @@
+//! A view compared with the oracle: every relation, of every simplex.
+
+use sig_core::{Complex, Index, Scratch, SimplexId, VertexId, mark_words};
+
+use crate::oracle::Oracle;
+use crate::paper;
+
+/// Memory for the queries on one complex.
+#[derive(Clone, Debug)]
+pub struct Memory<I> {
+    /// Words of marks.
+    pub marks: Vec<u32>,
+    /// Entries of the queue.
+    pub queue: Vec<I>,
+    /// Masks of the queue.
+    pub masks: Vec<u32>,
+    /// Entries of an answer.
+    pub found: Vec<I>,
+}
+
+impl<I: Index> Memory<I> {
+    /// The memory of the given numbers of words and entries.
+    #[must_use]
+    pub fn new(marks: usize, queue: usize, found: usize) -> Self {
+        Self { marks: vec![0; marks], queue: vec![I::ZERO; queue], masks: vec![0; queue], found: vec![I::ZERO; found] }
+    }
+
+    /// Enough for every query on a complex of `num_simplices` simplices, of dimension up to 6.
+    #[must_use]
+    pub fn roomy(num_simplices: usize) -> Self {
+        // k-adjacency gathers the cofaces of each k-face before it drops repetitions; a 6-simplex has 35 of one k.
+        Self::new(mark_words(num_simplices), num_simplices, 35 * num_simplices)
+    }
+
+    /// The scratch to query with.
+    #[must_use]
+    pub fn scratch(&mut self) -> Scratch<'_, I> {
+        Scratch::new(&mut self.marks, &mut self.queue, &mut self.masks, &mut self.found)
+    }
+}
+
+/// The ids of an answer, increasing; repetitions stay, so that a comparison finds them.
+pub fn sorted(answer: impl IntoIterator<Item = SimplexId>) -> Vec<usize> {
+    let mut ids = in_order(answer);
+    ids.sort_unstable();
+    ids
+}
+
+/// The ids of an answer in the order in which they come.
+pub fn in_order(answer: impl IntoIterator<Item = SimplexId>) -> Vec<usize> {
+    answer.into_iter().map(SimplexId::index).collect()
+}
+
+/// Walks an iterator and checks that it always says exactly how much is left, and stays at its end.
+///
+/// # Panics
+/// If it does not.
+pub fn exact<T>(mut iterator: impl ExactSizeIterator<Item = T>) -> Vec<T> {
+    let mut items = Vec::new();
+    let promised = iterator.len();
+    loop {
+        assert_eq!(iterator.size_hint(), (promised - items.len(), Some(promised - items.len())));
+        match iterator.next() {
+            Some(item) => items.push(item),
+            None => break,
+        }
+    }
+    assert_eq!(items.len(), promised);
+    assert!(iterator.next().is_none(), "an iterator goes on after its end");
+    items
+}
+
+/// Compares every relation of every simplex with its definition.
+///
+/// # Panics
+/// Where the two differ.
+pub fn assert_conforms<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle) {
+    assert_numbers(complex, oracle);
+    let mut memory = Memory::roomy(oracle.len());
+    let mut scratch = memory.scratch();
+    for simplex in 0..oracle.len() {
+        assert_downward(complex, oracle, simplex);
+        assert_stored(complex, oracle, simplex);
+        assert_upward(complex, oracle, simplex, &mut scratch);
+        assert_tree(complex, oracle, simplex);
+    }
+    assert_no_relations_past_the_end(complex, &mut scratch);
+}
+
+fn assert_numbers<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle) {
+    assert_eq!(complex.dim(), oracle.dims().checked_sub(1));
+    assert_eq!(complex.num_simplices(), oracle.len());
+    assert_eq!(complex.num_vertices(), oracle.of_dim(0).len());
+    assert_eq!(complex.euler_characteristic(), oracle.euler_characteristic());
+    assert_eq!(in_order(exact(complex.simplices())), (0..oracle.len()).collect::<Vec<_>>());
+    for dim in 0..oracle.dims() + 2 {
+        assert_eq!(complex.num_simplices_of_dim(dim), oracle.of_dim(dim).len());
+        assert_eq!(in_order(exact(complex.simplices_of_dim(dim))), oracle.of_dim(dim));
+        let backwards: Vec<usize> = oracle.of_dim(dim).into_iter().rev().collect();
+        assert_eq!(in_order(complex.simplices_of_dim(dim).rev()), backwards);
+    }
+}
+
+/// Dimension, vertices, facets, boundary and closure.
+fn assert_downward<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize) {
+    let (id, dim) = (SimplexId::new(simplex), oracle.dim(simplex));
+    assert_eq!(complex.dim_of(id), Some(dim));
+    let word: Vec<usize> = exact(complex.vertices(id)).into_iter().map(VertexId::index).collect();
+    assert_eq!(word, oracle.word(simplex), "vertices of {id}");
+    assert_eq!(complex.last_vertex(id).map(VertexId::index), word.last().copied());
+    let facets: Vec<usize> =
+        if dim == 0 { Vec::new() } else { (0..=dim).map(|at| oracle.facet(simplex, at)).collect() };
+    assert_eq!(in_order(exact(complex.facets(id))), facets, "facets of {id}");
+    assert!(complex.facets(id).rev().map(SimplexId::index).eq(facets.into_iter().rev()));
+    for q in 0..oracle.dims() + 2 {
+        assert_eq!(in_order(exact(complex.boundary(id, q))), oracle.boundary(simplex, q), "{q}-faces of {id}");
+    }
+    assert_eq!(in_order(exact(complex.closure(id))), oracle.closure(simplex), "closure of {id}");
+}
+
+/// What the file stores: clusters and flags.
+fn assert_stored<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize) {
+    let id = SimplexId::new(simplex);
+    let clusters = oracle.clusters(simplex);
+    let stored: Vec<_> = complex.clusters(id).map(|found| (found.dim, found.representative.index())).collect();
+    let expected: Vec<_> = clusters.iter().map(|cluster| (cluster.dim, cluster.members[0])).collect();
+    assert_eq!(stored, expected, "clusters around {id}");
+    assert_eq!(in_order(complex.partial_coboundary(id)), oracle.partial_coboundary(simplex));
+    for g in 0..oracle.dims() + 1 {
+        let expected: Vec<usize> = expected.iter().filter(|(dim, _)| *dim == g).map(|&(_, first)| first).collect();
+        assert_eq!(in_order(complex.partial_coboundary_of_dim(id, g)), expected, "C*({g}) of {id}");
+    }
+    assert_eq!(complex.is_top(id), oracle.is_top(simplex), "whether {id} is top");
+    assert_eq!(complex.is_single_cluster(id), oracle.is_single_cluster(simplex), "flag of {id}");
+}
+
+/// What is found by traversal.
+fn assert_upward<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize, scratch: &mut Scratch<'_, I>) {
+    let id = SimplexId::new(simplex);
+    for g in 0..oracle.dims() + 1 {
+        let found = sorted(exact(complex.coboundary(id, g, scratch).unwrap()));
+        assert_eq!(found, oracle.coboundary(simplex, g), "{g}-cofaces of {id}");
+    }
+    assert_eq!(sorted(exact(complex.star(id, scratch).unwrap())), oracle.star(simplex), "star of {id}");
+    let found = sorted(exact(complex.restricted_star(id, scratch).unwrap()));
+    assert_eq!(found, oracle.restricted_star(simplex), "restricted star of {id}");
+    assert_eq!(sorted(exact(complex.link(id, scratch).unwrap())), oracle.link(simplex), "link of {id}");
+    let found = sorted(exact(complex.adjacency(id, scratch).unwrap()));
+    assert_eq!(found, oracle.adjacency(simplex), "simplices adjacent to {id}");
+    for k in 0..oracle.dims() + 1 {
+        let found = sorted(exact(complex.k_adjacency(id, k, scratch).unwrap()));
+        assert_eq!(found, oracle.k_adjacency(simplex, k), "simplices {k}-adjacent to {id}");
+    }
+    let clusters = oracle.clusters(simplex);
+    for other in 0..oracle.len() {
+        let cluster = clusters.iter().find(|cluster| cluster.members.contains(&other));
+        let expected = cluster.map_or(&[][..], |cluster| &cluster.members);
+        let found = sorted(exact(complex.cluster_members(id, SimplexId::new(other), scratch).unwrap()));
+        assert_eq!(found, expected, "the cluster of #{other} around {id}");
+    }
+}
+
+/// The arrays as a simplex tree.
+fn assert_tree<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize) {
+    let (id, word) = (SimplexId::new(simplex), oracle.word(simplex));
+    assert_eq!(complex.parent(id).map(SimplexId::index), oracle.parent(simplex));
+    assert_eq!(in_order(exact(complex.children(id))), oracle.children(simplex), "children of {id}");
+    let siblings = oracle.parent(simplex).map_or_else(|| oracle.of_dim(0), |parent| oracle.children(parent));
+    assert_eq!(in_order(exact(complex.siblings(id))), siblings, "siblings of {id}");
+    assert_eq!(complex.find(&vertex_ids(word)), Some(id));
+    assert_eq!(in_order(complex.with_prefix(&vertex_ids(word))), oracle.with_prefix(word), "prefix {word:?}");
+    for vertex in 0..=oracle.of_dim(0).len() {
+        // One vertex more, wherever it sorts, or at the end, where it may be out of order.
+        let mut longer = [word, &[vertex]].concat();
+        assert_eq!(complex.find(&vertex_ids(&longer)).map(SimplexId::index), oracle.find(&longer), "{longer:?}");
+        longer.sort_unstable();
+        assert_eq!(complex.find(&vertex_ids(&longer)).map(SimplexId::index), oracle.find(&longer), "{longer:?}");
+        assert_eq!(in_order(complex.with_prefix(&vertex_ids(&longer))), oracle.with_prefix(&longer));
+    }
+}
+
+fn vertex_ids(word: &[usize]) -> Vec<VertexId> {
+    word.iter().copied().map(VertexId::new).collect()
+}
+
+fn assert_no_relations_past_the_end<I: Index>(complex: &Complex<'_, I>, scratch: &mut Scratch<'_, I>) {
+    let count = complex.num_simplices();
+    assert_eq!(complex.find(&[]), None);
+    assert_eq!(in_order(complex.with_prefix(&[])), in_order(complex.simplices()));
+    for id in [count, count + 1, count + 64, usize::MAX].map(SimplexId::new) {
+        assert_eq!(complex.dim_of(id), None);
+        assert_eq!(complex.vertices(id).len() + complex.facets(id).len() + complex.closure(id).len(), 0);
+        assert_eq!(complex.boundary(id, 0).len() + complex.children(id).len() + complex.siblings(id).len(), 0);
+        assert_eq!(complex.clusters(id).count() + complex.partial_coboundary(id).count(), 0);
+        assert!(!complex.is_top(id) && !complex.is_single_cluster(id));
+        assert!(complex.parent(id).is_none() && complex.last_vertex(id).is_none());
+        assert_eq!(complex.coboundary(id, 1, scratch).unwrap().len(), 0);
+        assert_eq!(complex.star(id, scratch).unwrap().len(), 0);
+        assert_eq!(complex.restricted_star(id, scratch).unwrap().len(), 0);
+        assert_eq!(complex.link(id, scratch).unwrap().len(), 0);
+        assert_eq!(complex.adjacency(id, scratch).unwrap().len(), 0);
+        assert_eq!(complex.k_adjacency(id, 0, scratch).unwrap().len(), 0);
+        assert_eq!(complex.cluster_members(id, SimplexId::new(0), scratch).unwrap().len(), 0);
+        assert_eq!(complex.cluster_members(SimplexId::new(0), id, scratch).unwrap().len(), 0);
+    }
+}
+
+/// Compares the relations of every simplex with Algorithms 4 to 7.
+///
+/// # Panics
+/// Where the two differ.
+pub fn assert_agrees_with_the_paper<I: Index>(complex: &Complex<'_, I>) {
+    let mut memory = Memory::roomy(complex.num_simplices());
+    let mut scratch = memory.scratch();
+    let top_dim = complex.dim().unwrap_or(0);
+    for id in complex.simplices() {
+        let dim = complex.dim_of(id).unwrap();
+        for q in 0..dim {
+            assert!(complex.boundary(id, q).eq(paper::boundary(complex, q, id)), "Algorithm 4: {q}-faces of {id}");
+        }
+        for g in dim + 1..=top_dim {
+            let found: paper::Set = complex.coboundary(id, g, &mut scratch).unwrap().collect();
+            assert_eq!(found, paper::coboundary(complex, g, id), "Algorithm 5: {g}-cofaces of {id}");
+        }
+        for cluster in complex.clusters(id) {
+            let found = complex.cluster_members(id, cluster.representative, &mut scratch).unwrap();
+            let printed = paper::retrieve_cluster(complex, id, cluster.representative);
+            assert_eq!(found.collect::<paper::Set>(), printed, "Algorithm 6: {cluster:?} around {id}");
+        }
+        let mut printed = paper::adjacency(complex, id);
+        printed.remove(&id);
+        let found: paper::Set = complex.adjacency(id, &mut scratch).unwrap().collect();
+        assert_eq!(found, printed, "Algorithm 7: simplices adjacent to {id}");
+    }
+}

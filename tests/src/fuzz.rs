@@ -1,0 +1,157 @@
+//! The bodies of the fuzz targets. Each takes any bytes and panics on a bug; the tests replay the committed corpus.
+
+use arbitrary::Unstructured;
+use sig_core::format::{self, Container};
+use sig_core::{AnyComplex, with_complex};
+use sig_tools::build::{BuildOptions, build};
+use sig_tools::incidence_graph::IncidenceGraph;
+pub use sig_tools::io::Format;
+use sig_tools::io::{ReadOptions, read_bytes};
+use sig_tools::soup::{Labels, Scalars, Soup};
+
+use crate::aligned::AlignedBytes;
+use crate::conformance;
+use crate::encode::{Options, encode};
+use crate::oracle::{Oracle, Word};
+use crate::queries::{ask_everything, reseal};
+
+/// Simplices of which everything is asked.
+const ASKED: usize = 48;
+
+/// Simplices of a complex that is built from an input; larger ones are refused by the builder.
+const BUILT: u64 = 2_000;
+
+/// Opens the bytes as a file, and again with the header's checksum made to fit, and asks what was accepted everything.
+pub fn open(bytes: &[u8]) {
+    let mut buffer = AlignedBytes::from(bytes);
+    open_one(&buffer);
+    reseal(&mut buffer);
+    if *buffer != *bytes {
+        open_one(&buffer);
+    }
+}
+
+fn open_one(bytes: &AlignedBytes) {
+    let _ = format::verify(bytes);
+    swap_twice(bytes);
+    if let Ok(container) = Container::from_bytes(bytes) {
+        assert!(container.sections().count() <= container.header().sections as usize);
+    }
+    if let Ok(any) = AnyComplex::from_bytes(bytes) {
+        // Vertices alone take no bytes: of them there may be any number.
+        if with_complex!(any, complex => complex.num_simplices()) <= 1 << 16 {
+            with_complex!(any, complex => { ask_everything(&complex, ASKED); });
+        }
+    }
+}
+
+fn swap_twice(bytes: &AlignedBytes) {
+    let mut swapped = bytes.clone();
+    match format::swap_byte_order(&mut swapped) {
+        Ok(()) => {
+            format::swap_byte_order(&mut swapped).expect("what was swapped can be swapped back");
+            assert_eq!(&swapped, bytes, "swapping twice is nothing");
+        }
+        Err(_) => assert_eq!(&swapped, bytes, "a failed swap changes nothing"),
+    }
+}
+
+/// Reads the bytes as a list of simplices, builds their complex in both ways, encodes it, and compares all relations with
+/// the oracle.
+///
+/// # Panics
+/// Where they differ.
+pub fn roundtrip(bytes: &[u8]) {
+    let simplices = simplices(bytes).unwrap_or_default();
+    let oracle = Oracle::new(&simplices);
+    let options = Options { tree: bytes.len().is_multiple_of(2), checksums: true, ..Options::default() };
+    let file = encode(&oracle, &options);
+    format::verify(&file).expect("a file that was just written");
+    let any = AnyComplex::from_bytes(&file).expect("a file that was just written");
+    with_complex!(any, complex => {
+        complex.validate().expect("a complex");
+        conformance::assert_conforms(&complex, &oracle);
+    });
+
+    let mut soup = Soup::new(Labels::Numbered(10), false);
+    for simplex in &simplices {
+        soup.push(&simplex.iter().map(|&vertex| u32::try_from(vertex).expect("a digit")).collect::<Vec<_>>());
+    }
+    build_in_both_ways(soup);
+}
+
+/// Up to 12 simplices on up to 10 vertices, of dimension up to 4.
+///
+/// # Errors
+/// When the bytes are spent.
+pub fn simplices(bytes: &[u8]) -> arbitrary::Result<Vec<Word>> {
+    let mut source = Unstructured::new(bytes);
+    let mut simplices = Vec::new();
+    while !source.is_empty() && simplices.len() < 12 {
+        let size = source.int_in_range(1..=5)?;
+        let mut word = (0..size).map(|_| source.int_in_range(0..=9)).collect::<arbitrary::Result<Word>>()?;
+        word.sort_unstable();
+        word.dedup();
+        simplices.push(word);
+    }
+    Ok(simplices)
+}
+
+/// Reads the bytes as an input of the given format, or of the one that its content tells, and builds what they hold.
+///
+/// # Panics
+/// If the soup is malformed, or the two ways of building it differ.
+pub fn read(format: Option<Format>, bytes: &[u8]) {
+    for drop_degenerate in [false, true] {
+        let options = ReadOptions { format, drop_degenerate, ..ReadOptions::default() };
+        match read_bytes(bytes, "input", &options) {
+            Ok((soup, _)) => {
+                assert_sound(&soup, bytes.len());
+                build_in_both_ways(soup);
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}
+
+/// Vertex numbers inside the table of labels, whole simplices without repetitions, and no more of anything than the
+/// bytes can have held.
+fn assert_sound(soup: &Soup, bytes: usize) {
+    let vertices = soup.labels.len();
+    for (dim, flat) in soup.simplices.iter().enumerate() {
+        assert!(flat.len().is_multiple_of(dim + 1), "a part of a {dim}-simplex");
+        for word in flat.chunks_exact(dim + 1) {
+            let mut sorted = word.to_vec();
+            sorted.sort_unstable();
+            sorted.dedup();
+            assert_eq!(sorted.len(), dim + 1, "{word:?} repeats a vertex");
+            assert!(sorted.last().is_none_or(|&last| (last as usize) < vertices), "{word:?} of {vertices} vertices");
+        }
+    }
+    if let Some(coordinates) = &soup.coordinates {
+        let values = match &coordinates.values {
+            Scalars::F32(values) => values.len(),
+            Scalars::F64(values) => values.len(),
+        };
+        assert_eq!(values, vertices * coordinates.dim, "{} coordinates a vertex", coordinates.dim);
+    }
+    // Gzip takes about a thousandth at best.
+    assert!(vertices <= 1100 * (bytes + 1), "{vertices} vertices in {bytes} bytes");
+}
+
+/// Builds a soup, and by Algorithms 1 to 3 from an incidence graph: both the same, or both refused.
+fn build_in_both_ways(soup: Soup) {
+    let options = BuildOptions { max_simplices: Some(BUILT), ..BuildOptions::default() };
+    let built = build(soup.clone(), &options);
+    if built.as_ref().is_ok_and(|built| match &built.arrays {
+        sig_tools::build::Arrays::Narrow(arrays) => arrays.num_simplices > 300,
+        sig_tools::build::Arrays::Wide(_) => true,
+    }) {
+        return;
+    }
+    match (built, IncidenceGraph::new(&soup, &options)) {
+        (Ok(built), Ok(graph)) => assert_eq!(built.arrays, graph.build_sig()),
+        (Err(_), _) => {}
+        (Ok(_), Err(error)) => panic!("built, but not as an incidence graph: {error}"),
+    }
+}
