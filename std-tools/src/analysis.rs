@@ -117,3 +117,109 @@ impl<I: Index> Classes<I> {
         a != b
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use sig_core::Complex;
+
+    use super::Analysis;
+    use crate::build::{BuildOptions, build};
+    use crate::soup::{Labels, Soup};
+    use crate::store::{EncodeOptions, Encoding};
+
+    fn analysis(simplices: &[Vec<u32>]) -> Analysis {
+        let mut soup = Soup::new(Labels::Numbered(10), false);
+        simplices.iter().for_each(|simplex| soup.push(simplex));
+        let built = build(soup, &BuildOptions::default()).unwrap();
+        let file = Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap();
+        Analysis::new(&Complex::<u16>::from_bytes(&file).unwrap())
+    }
+
+    fn digits(simplices: &str) -> Analysis {
+        let word = |word: &str| word.bytes().map(|digit| u32::from(digit - b'0')).collect();
+        analysis(&simplices.split_whitespace().map(word).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn figures_of_the_paper() {
+        let figure_1 = digits("012 023 045 056 07");
+        assert_eq!(figure_1.top_simplices, [0, 1, 4]);
+        // The fans 012 023 and 045 056 meet in a vertex, as does the edge.
+        assert_eq!(figure_1.h_components, [1, 3]);
+        assert!(!figure_1.is_regular && !figure_1.is_pseudo_manifold);
+        let figure_2 = digits("0123 0145 0156 017 018");
+        assert_eq!(figure_2.top_simplices, [0, 0, 2, 3]);
+        // All share edge 01; the tetrahedra 0145 and 0156 share a triangle, no other two cells do.
+        assert_eq!(figure_2.h_components, [1, 1, 4]);
+    }
+
+    #[test]
+    fn pseudo_manifolds() {
+        let cases = [
+            ("012 013 023 123", true, "the boundary of a tetrahedron"),
+            ("012", true, "a disk"),
+            ("012 013 014", false, "a book of three pages"),
+            ("012 345", false, "two disks"),
+            ("012 034", false, "two triangles at a vertex: not 1-connected"),
+            ("012 03", false, "a dangling edge"),
+            ("01 12 02", true, "a circle"),
+            ("01 02 03", false, "three edges at a vertex"),
+            ("0", true, "a point"),
+            ("0 1", true, "the 0-sphere"),
+            ("0 1 2", false, "three points"),
+            ("", false, "nothing"),
+        ];
+        for (simplices, expected, what) in cases {
+            assert_eq!(digits(simplices).is_pseudo_manifold, expected, "{what}");
+        }
+    }
+
+    #[test]
+    fn small_dimensions() {
+        assert_eq!(digits("").components(), 0);
+        assert_eq!(digits("").h_components, [0; 0]);
+        assert_eq!(digits("0 1 2").h_components, [3]);
+        assert_eq!(digits("01 2 3").h_components, [3]);
+    }
+
+    /// From the definition, on the top simplices: two that share h + 1 vertices share an h-face.
+    fn components_by_definition(simplices: &[Vec<u32>], h: usize) -> usize {
+        let is_face = |a: &[u32], b: &[u32]| a.iter().all(|vertex| b.contains(vertex));
+        let mut tops: Vec<Vec<u32>> = Vec::new();
+        for simplex in simplices {
+            if !simplices.iter().any(|other| other.len() > simplex.len() && is_face(simplex, other))
+                && !tops.iter().any(|top| top.len() == simplex.len() && is_face(simplex, top))
+            {
+                tops.push(simplex.clone());
+            }
+        }
+        let mut class: Vec<usize> = (0..tops.len()).collect();
+        for i in 0..tops.len() {
+            for j in 0..i {
+                if tops[i].iter().filter(|vertex| tops[j].contains(vertex)).count() > h {
+                    let (from, to) = (class[i], class[j]);
+                    class.iter_mut().filter(|class| **class == from).for_each(|class| *class = to);
+                }
+            }
+        }
+        class.sort_unstable();
+        class.dedup();
+        class.len()
+    }
+
+    proptest! {
+        #[test]
+        fn components_agree_with_the_definition(
+            simplices in prop::collection::vec(prop::collection::btree_set(0..10_u32, 1..6), 1..12)
+        ) {
+            let simplices: Vec<Vec<u32>> = simplices.into_iter().map(|set| set.into_iter().collect()).collect();
+            let found = analysis(&simplices).h_components;
+            let dims = simplices.iter().map(Vec::len).max().unwrap_or(0);
+            prop_assert_eq!(found.len(), (dims - 1).max(1));
+            for (h, &count) in found.iter().enumerate() {
+                prop_assert_eq!(count, components_by_definition(&simplices, h), "h = {}", h);
+            }
+        }
+    }
+}

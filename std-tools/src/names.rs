@@ -87,3 +87,50 @@ pub fn find_simplex<I: Index>(complex: &Complex<'_, I>, labels: &[&str]) -> Resu
     vertices.sort_unstable();
     complex.find(&vertices).ok_or_else(|| FindError::UnknownSimplex { labels: labels.join(",") })
 }
+
+#[cfg(test)]
+mod tests {
+    use sig_core::Complex;
+
+    use super::*;
+    use crate::build::{BuildOptions, build};
+    use crate::soup::{Labels, Soup};
+    use crate::store::{AlignedBytes, EncodeOptions, Encoding};
+
+    fn file(labels: Labels) -> AlignedBytes {
+        let mut soup = Soup::new(labels, false);
+        soup.push(&[0, 1, 2]);
+        soup.push(&[2, 3]);
+        let built = build(soup, &BuildOptions::default()).unwrap();
+        Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap()
+    }
+
+    #[test]
+    fn simplices_are_found_by_labels_in_any_order() {
+        let labels = [
+            (Labels::Numbered(4), ["0", "1", "2", "3"]),
+            (Labels::Integers(vec![70, 5, 60, 1]), ["70", "5", "60", "1"]),
+            (Labels::Tokens(vec!["b".into(), "A".into(), "x-1".into(), "7".into()]), ["b", "A", "x-1", "7"]),
+        ];
+        for (labels, [a, b, c, d]) in labels {
+            let file = file(labels);
+            let complex = Complex::<u16>::from_bytes(&file).unwrap();
+            for order in [[a, b, c], [c, a, b], [b, a, c]] {
+                let triangle = find_simplex(&complex, &order).unwrap();
+                assert_eq!(complex.dim_of(triangle), Some(2));
+                let mut names = simplex_labels(&complex, triangle);
+                names.sort();
+                let mut expected = order.to_vec();
+                expected.sort_unstable();
+                assert_eq!(names, expected);
+            }
+            assert!(find_simplex(&complex, &[d, c]).is_ok());
+            assert_eq!(find_simplex(&complex, &[a, d]), Err(FindError::UnknownSimplex { labels: [a, d].join(",") }));
+            assert_eq!(find_simplex(&complex, &[a, a]), Err(FindError::RepeatedVertex { label: a.to_owned() }));
+            for unknown in ["", "4", "-1", "99999999999999999999", "é"] {
+                let error = FindError::UnknownVertex { label: unknown.to_owned() };
+                assert_eq!(find_simplex(&complex, &[a, unknown]), Err(error));
+            }
+        }
+    }
+}

@@ -9,6 +9,8 @@ mod obj;
 mod off;
 mod ply;
 mod simplex_list;
+#[cfg(test)]
+mod tests;
 mod vtu;
 
 use std::fmt;
@@ -221,6 +223,3 @@ pub fn export<I: Index>(
     }
     Ok(notes)
 }
-
-#[cfg(test)]
-mod tests;

@@ -260,6 +260,10 @@ impl<'a> Encoding<'a> {
     ///
     /// # Errors
     /// [`EncodeError::Format`].
+    #[expect(
+        clippy::redundant_closure_for_method_calls,
+        reason = "the method is for one lifetime of the sections only"
+    )]
     pub fn file_bytes(&self) -> Result<u64, EncodeError> {
         self.with_encoder(|encoder| encoder.file_bytes())
     }

@@ -9,6 +9,8 @@ mod bytes;
 mod encode;
 mod mapped;
 mod scratch;
+#[cfg(test)]
+mod tests;
 pub mod verify;
 
 pub use bytes::AlignedBytes;
