@@ -42,9 +42,9 @@ pub(super) fn to_path(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> anyhow::Result<()> {
     if is_stdout(path) {
-        stdout(fill)?
+        stdout(fill)?;
     } else {
-        atomic::write(path, existing, fill)?
+        atomic::write(path, existing, fill)?;
     }
     Ok(())
 }

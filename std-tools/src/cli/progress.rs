@@ -62,10 +62,9 @@ impl Phases {
     }
 
     pub(super) fn clear(&self) {
-        if let Ok(mut current) = self.current.lock() {
-            if let Some((_, bar)) = current.take() {
-                bar.finish_and_clear();
-            }
+        let Ok(mut current) = self.current.lock() else { return };
+        if let Some((_, bar)) = current.take() {
+            bar.finish_and_clear();
         }
     }
 }

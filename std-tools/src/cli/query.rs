@@ -97,7 +97,8 @@ impl Args {
         let mut memory = OwnedScratch::new(complex);
         if self.relation == Relation::Clusters {
             let clusters = clusters(complex, simplex, &mut memory);
-            return Ok(if self.json { output::json(&clusters)? } else { print_clusters(&clusters)? });
+            let printed = if self.json { output::json(&clusters) } else { print_clusters(&clusters) };
+            return Ok(printed?);
         }
         let mut found = self.find(complex, simplex, &mut memory);
         found.sort_unstable();
