@@ -1,0 +1,327 @@
+//! `sig build`: meshes and lists of simplices become a complex in a file.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::Context;
+use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde::Serialize;
+use sig_core::{Index, IndexWidth};
+use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
+use sig_tools::io::{self as readers, Format, MergeReport, ReadOptions, ReadReport};
+use sig_tools::soup::Soup;
+use sig_tools::store::{EncodeOptions, Encoding};
+
+use super::output::{self, grouped};
+use super::{UsageError, progress};
+
+/// Build a complex from meshes or lists of simplices
+///
+/// Reads OFF, OBJ, PLY, STL, Gmsh MSH and lists of simplices by labels, also compressed with gzip. Lists that use the
+/// same labels speak of the same vertices; meshes are put beside each other. Polygons are split into triangles.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  sig build bunny.off -o bunny.sigc
+  sig build part1.txt part2.txt -o all.sigc --force     simplices by label, from two files
+  sig build bracket.msh.gz -o bracket.sigc --order hilbert --json
+  printf 'a,b,c\\nc,d\\n' | sig build - -o small.sigc --format simplices")]
+pub(super) struct Args {
+    /// The inputs; `-` is standard input
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
+
+    #[command(flatten)]
+    target: output::Target,
+
+    /// The format of the inputs; by default it is found by content, then by name
+    #[arg(short, long, value_parser = format_parser())]
+    format: Option<Format>,
+
+    /// How vertices are numbered, which decides what lies together in the file
+    #[arg(long, value_enum, default_value_t)]
+    order: Order,
+
+    /// The width of the indices in bits; by default the least that holds the complex
+    #[arg(long, value_name = "BITS", value_parser = width_parser())]
+    index_bits: Option<IndexWidth>,
+
+    /// Drop the vertices of a mesh that no simplex uses; by default they stay, as simplices of dimension 0
+    #[arg(long)]
+    drop_unused: bool,
+
+    /// Drop simplices that repeat a vertex; by default they are an error
+    #[arg(long)]
+    drop_degenerate: bool,
+
+    /// Leave out the sections that make finding simplices by vertices fast
+    #[arg(long)]
+    no_tree: bool,
+
+    /// Leave out the checksums
+    #[arg(long)]
+    no_checksums: bool,
+
+    /// Text to be kept in the file: where the complex comes from
+    #[arg(long, value_name = "TEXT")]
+    provenance: Option<String>,
+
+    /// The number of threads; by default one for each processor. The file is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+
+    /// Refuse to build more than N simplices; by default, more than memory holds
+    #[arg(long, value_name = "N")]
+    max_simplices: Option<u64>,
+
+    /// Print a JSON object on what was read and built
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Order {
+    /// By label: numbers by value, other labels bytewise
+    #[default]
+    Input,
+    /// Along a Hilbert curve through the coordinates
+    Hilbert,
+    /// By the reverse Cuthill–McKee order of the edges
+    Rcm,
+}
+
+fn format_parser() -> impl TypedValueParser<Value = Format> {
+    let value = |format: &Format| PossibleValue::new(format.name()).help(format.description());
+    PossibleValuesParser::new(Format::ALL.iter().map(value))
+        .try_map(|name| Format::from_name(&name).ok_or(UsageError(format!("unknown format {name}"))))
+}
+
+fn width_parser() -> impl TypedValueParser<Value = IndexWidth> {
+    PossibleValuesParser::new(["16", "32", "64"]).map(|bits| match bits.as_str() {
+        "16" => IndexWidth::Bits16,
+        "32" => IndexWidth::Bits32,
+        _ => IndexWidth::Bits64,
+    })
+}
+
+impl Args {
+    pub(super) fn run(self) -> anyhow::Result<()> {
+        let start = Instant::now();
+        let (path, existing) = (&self.target.output, self.target.existing());
+        if self.json && output::is_stdout(path) {
+            return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
+        }
+        output::check(path, existing)?;
+        if let Some(threads) = self.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
+        }
+        let (soup, inputs, merged) = self.read()?;
+        let built = self.build(soup)?;
+        let options = EncodeOptions {
+            width: self.index_bits,
+            tree: !self.no_tree,
+            checksums: !self.no_checksums,
+            provenance: self.provenance.as_deref(),
+        };
+        let encoding = Encoding::new(&built, &options)?;
+        output::to_path(path, existing, |out| encoding.write_to(out))?;
+        let report = Report {
+            output: path.display().to_string(),
+            file_bytes: encoding.file_bytes()?,
+            index_bits: encoding.width().bits(),
+            seconds: start.elapsed().as_secs_f64(),
+            ..Report::new(&built, inputs, &merged)
+        };
+        report.log();
+        if self.json {
+            output::json(&report)?;
+        }
+        Ok(())
+    }
+
+    fn read(&self) -> anyhow::Result<(Soup, Vec<Input>, MergeReport)> {
+        let (mut soups, mut inputs) = (Vec::new(), Vec::new());
+        for path in &self.inputs {
+            let (soup, report) = self.read_one(path)?;
+            soups.push(soup);
+            inputs.push(Input::new(path, report));
+        }
+        let (soup, merged) = readers::merge(soups).context("cannot put the inputs together")?;
+        Ok((soup, inputs, merged))
+    }
+
+    fn read_one(&self, path: &Path) -> Result<(Soup, ReadReport), readers::ReadError> {
+        let mut options =
+            ReadOptions { format: self.format, drop_degenerate: self.drop_degenerate, ..ReadOptions::default() };
+        if !progress::is_watched() {
+            return readers::read_path(path, &options);
+        }
+        let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).map(|metadata| metadata.len());
+        let bar = progress::bytes(length, &path.display().to_string());
+        let show = |bytes| bar.set_position(bytes);
+        options.progress = Some(&show);
+        let read = readers::read_path(path, &options);
+        bar.finish_and_clear();
+        read
+    }
+
+    fn build(&self, soup: Soup) -> Result<Built, build::BuildError> {
+        let bars = progress::Phases::new();
+        let show = |phase, done, total| bars.show(phase, done, total);
+        let options = BuildOptions {
+            order: match self.order {
+                Order::Input => VertexOrder::Input,
+                Order::Hilbert => VertexOrder::Hilbert,
+                Order::Rcm => VertexOrder::Rcm,
+            },
+            unused: if self.drop_unused { Unused::Drop } else { Unused::Keep },
+            max_simplices: self.max_simplices,
+            progress: progress::is_watched().then_some(&show),
+            ..BuildOptions::default()
+        };
+        let built = build::build(soup, &options);
+        bars.clear();
+        built
+    }
+}
+
+/// What was read and built; as JSON, the names of the fields.
+#[derive(Serialize, Default)]
+struct Report {
+    output: String,
+    file_bytes: u64,
+    index_bits: u32,
+    dimension: i64,
+    simplices: Vec<usize>,
+    top_simplices: Vec<usize>,
+    inputs: Vec<Input>,
+    renumbered: Vec<Renumbered>,
+    /// Simplices that the inputs list, and what became of them.
+    listed: usize,
+    repeated: usize,
+    non_maximal: usize,
+    conflicting_orientations: usize,
+    unused_vertices_kept: usize,
+    unused_vertices_dropped: usize,
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct Input {
+    file: String,
+    format: &'static str,
+    gzip: bool,
+    vertices: usize,
+    simplices: Vec<usize>,
+    polygons: usize,
+    polyhedra: usize,
+    split_into: usize,
+    degenerate_dropped: usize,
+    welded_corners: usize,
+    inner_nodes_dropped: usize,
+    ignored: u64,
+    ignored_names: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Renumbered {
+    file: String,
+    from: u64,
+    to: u64,
+}
+
+impl Input {
+    fn new(path: &Path, report: ReadReport) -> Self {
+        Self {
+            file: if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() },
+            format: report.format.name(),
+            gzip: report.gzip,
+            vertices: report.vertices,
+            simplices: report.simplices,
+            polygons: report.polygons,
+            polyhedra: report.polyhedra,
+            split_into: report.split_into,
+            degenerate_dropped: report.degenerate_dropped,
+            welded_corners: report.welded_corners,
+            inner_nodes_dropped: report.inner_nodes_dropped,
+            ignored: report.ignored.count,
+            ignored_names: report.ignored.names,
+        }
+    }
+
+    fn log(&self) {
+        let listed: usize = self.simplices.iter().sum();
+        let gzip = if self.gzip { ", gzip" } else { "" };
+        let (vertices, listed) = (grouped(self.vertices), grouped(listed));
+        eprintln!("read   {}: {}{gzip}, {vertices} vertices, {listed} simplices", self.file, self.format);
+        let split = format!("polygons and polyhedra, split into {} simplices", grouped(self.split_into));
+        note(self.polygons + self.polyhedra, &split);
+        note(self.degenerate_dropped, "simplices dropped that repeat a vertex");
+        note(self.welded_corners, "corners welded to one at the same place");
+        note(self.inner_nodes_dropped, "nodes dropped that lie inside elements of higher order");
+        if self.ignored > 0 {
+            eprintln!("       ignored {} times: {}", grouped(self.ignored), self.ignored_names.join(", "));
+        }
+    }
+}
+
+impl Report {
+    fn new(built: &Built, inputs: Vec<Input>, merged: &MergeReport) -> Self {
+        let simplices = match &built.arrays {
+            Arrays::Narrow(arrays) => counts(arrays),
+            Arrays::Wide(arrays) => counts(arrays),
+        };
+        let BuildReport { listed, repeated, non_maximal, conflicting, unused_kept, unused_dropped, .. } = built.report;
+        let renumbered = merged.renumbered.iter().filter_map(|renumbered| {
+            let file = inputs.get(renumbered.input)?.file.clone();
+            Some(Renumbered { file, from: renumbered.from, to: renumbered.to })
+        });
+        Self {
+            dimension: i64::try_from(simplices.len()).unwrap_or(i64::MAX) - 1,
+            simplices,
+            top_simplices: built.report.top_simplices.clone(),
+            renumbered: renumbered.collect(),
+            inputs,
+            listed,
+            repeated,
+            non_maximal,
+            conflicting_orientations: conflicting,
+            unused_vertices_kept: unused_kept,
+            unused_vertices_dropped: unused_dropped,
+            ..Self::default()
+        }
+    }
+
+    fn log(&self) {
+        self.inputs.iter().for_each(Input::log);
+        for Renumbered { file, from, to } in
+            self.renumbered.iter().filter(|renumbered| renumbered.from != renumbered.to)
+        {
+            eprintln!("       vertex {from} of {file} is now {to}, and so on");
+        }
+        let total: usize = self.simplices.iter().sum();
+        let counts: Vec<_> = self.simplices.iter().map(grouped).collect();
+        eprint!("built  dimension {}, {} simplices", self.dimension, grouped(total));
+        eprintln!("{}{}", if counts.is_empty() { "" } else { ": " }, counts.join(" + "));
+        note(self.repeated, "simplices merged that repeat another");
+        note(self.non_maximal, "simplices merged that are faces of others");
+        note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");
+        note(self.unused_vertices_kept, "unused vertices kept (--drop-unused drops them)");
+        note(self.unused_vertices_dropped, "unused vertices dropped");
+        let (bytes, width) = (grouped(self.file_bytes), self.index_bits);
+        eprintln!("wrote  {}: {bytes} bytes, {width}-bit indices, {:.2} s", self.output, self.seconds);
+    }
+}
+
+/// The number of simplices of each dimension.
+fn counts<I: Index>(arrays: &SigArrays<I>) -> Vec<usize> {
+    (0..arrays.first.len()).map(|dim| arrays.ids(dim).len()).collect()
+}
+
+/// A line on something that happened so often, if it did.
+fn note(count: usize, what: &str) {
+    if count > 0 {
+        eprintln!("       {} {what}", grouped(count));
+    }
+}

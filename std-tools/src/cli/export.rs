@@ -1,0 +1,84 @@
+//! `sig export`: a complex in the formats of other programs.
+
+use std::io;
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use sig_core::with_complex;
+use sig_tools::export::{self, ExportError, Format};
+use sig_tools::store::Access;
+
+use super::input::Input;
+use super::{UsageError, output};
+
+/// Write the top simplices of a complex in another format
+///
+/// What the format cannot hold is refused, never left out in silence.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  sig export bunny.sigc -o bunny.vtu                  for ParaView; the format goes by the name
+  sig export rips.sigc -o rips.txt --format simplices
+  sig export bunny.sigc -o - --format off | gzip > bunny.off.gz")]
+pub(super) struct Args {
+    /// The file to export; `-` is standard input
+    file: PathBuf,
+
+    #[command(flatten)]
+    target: output::Target,
+
+    /// The format; by default the one that the name of OUT stands for
+    #[arg(short, long, value_parser = format_parser())]
+    format: Option<Format>,
+}
+
+fn format_parser() -> impl TypedValueParser<Value = Format> {
+    let value = |format: &Format| PossibleValue::new(format.name()).help(format.description());
+    PossibleValuesParser::new(Format::ALL.iter().map(value))
+        .try_map(|name| Format::from_name(&name).ok_or(UsageError(format!("unknown format {name}"))))
+}
+
+impl Args {
+    pub(super) fn run(self) -> anyhow::Result<()> {
+        let format = self.format()?;
+        let (path, existing) = (&self.target.output, self.target.existing());
+        output::check(path, existing)?;
+        let input = Input::open(&self.file, Access::Normal)?;
+        let complex = input.complex();
+        with_complex!(complex, complex => export::check(&complex, format))
+            .with_context(|| self.file.display().to_string())?;
+        let mut notes = Vec::new();
+        output::to_path(path, existing, |out| {
+            notes =
+                with_complex!(complex, complex => export::export(&complex, format, out)).map_err(
+                    |error| match error {
+                        ExportError::Io(error) => error,
+                        other => io::Error::other(other),
+                    },
+                )?;
+            Ok(())
+        })?;
+        for note in notes {
+            eprintln!("sig: note: {format}: {note}");
+        }
+        Ok(())
+    }
+
+    fn format(&self) -> Result<Format, UsageError> {
+        if let Some(format) = self.format {
+            return Ok(format);
+        }
+        let path = &self.target.output;
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        extension.and_then(Format::from_name).ok_or_else(|| {
+            let names: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
+            let what = if output::is_stdout(path) {
+                "standard output has no name"
+            } else {
+                "the name does not tell the format"
+            };
+            UsageError(format!("{}: {what}; use --format with one of: {}", path.display(), names.join(", ")))
+        })
+    }
+}

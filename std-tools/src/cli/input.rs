@@ -1,0 +1,48 @@
+//! Opening a file for a command: mapped where that works, loaded where it does not.
+
+use std::borrow::Cow;
+use std::io;
+use std::path::Path;
+
+use sig_core::AnyComplex;
+use sig_tools::store::{Access, OpenError};
+use sig_tools::{Loaded, Mapped};
+
+/// A file that is open.
+pub(super) enum Input {
+    Mapped(Mapped),
+    Loaded(Loaded),
+}
+
+impl Input {
+    /// Opens `path`, which will be read as `access` says; `-` is standard input.
+    pub(super) fn open(path: &Path, access: Access) -> Result<Self, OpenError> {
+        if path.as_os_str() == "-" {
+            return Loaded::read(io::stdin().lock(), Path::new("<stdin>"), 0).map(Self::Loaded);
+        }
+        // Pipes and devices cannot be mapped, and big-endian hosts must swap.
+        let is_file = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+        if !is_file || cfg!(target_endian = "big") {
+            return Loaded::open(path).map(Self::Loaded);
+        }
+        let mapped = Mapped::open(path)?;
+        // Advice that is not taken costs nothing but time.
+        let _ = mapped.advise(access);
+        Ok(Self::Mapped(mapped))
+    }
+
+    pub(super) fn complex(&self) -> AnyComplex<'_> {
+        match self {
+            Self::Mapped(mapped) => mapped.complex(),
+            Self::Loaded(loaded) => loaded.complex(),
+        }
+    }
+
+    /// The bytes as they lie on disk.
+    pub(super) fn file_bytes(&self) -> Cow<'_, [u8]> {
+        match self {
+            Self::Mapped(mapped) => Cow::Borrowed(mapped.bytes()),
+            Self::Loaded(loaded) => loaded.file_bytes(),
+        }
+    }
+}

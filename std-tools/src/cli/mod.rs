@@ -1,0 +1,116 @@
+//! The command line: one thin file a subcommand. Each parses its arguments, calls the library and prints.
+//!
+//! Standard output is data, standard error what is said about the work. Exit codes: 0 done, 1 the data say no or cannot
+//! be read or written, 2 the command line is wrong, 130 interrupted.
+
+mod build;
+mod completions;
+mod export;
+mod info;
+mod input;
+mod man;
+mod output;
+mod progress;
+mod query;
+mod verify;
+
+use std::io;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use sig_tools::store::atomic;
+
+/// Simplicial complexes in flat arrays: build, inspect, query, check and export them.
+#[derive(Parser)]
+#[command(name = "sig", version, arg_required_else_help = true, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  sig build bunny.off -o bunny.sigc     a mesh becomes a complex with all its relations
+  sig info bunny.sigc                   what is in it
+  sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
+  sig verify bunny.sigc                 whether it is whole and right
+  sig export bunny.sigc -o bunny.vtu    for ParaView
+
+Exit codes: 0 done; 1 the data say no, or cannot be read or written; 2 wrong command line; 130 interrupted.";
+
+#[derive(Subcommand)]
+enum Command {
+    Build(build::Args),
+    Info(info::Args),
+    Query(query::Args),
+    Verify(verify::Args),
+    Export(export::Args),
+    Completions(completions::Args),
+    Man(man::Args),
+}
+
+impl Command {
+    fn run(self) -> anyhow::Result<()> {
+        match self {
+            Self::Build(args) => args.run(),
+            Self::Info(args) => args.run(),
+            Self::Query(args) => args.run(),
+            Self::Verify(args) => args.run(),
+            Self::Export(args) => args.run(),
+            Self::Completions(args) => args.run(),
+            Self::Man(args) => args.run(),
+        }
+    }
+}
+
+/// The command line for generators of completions and manuals.
+fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// What is wrong with a command line, where only the data can tell.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct UsageError(String);
+
+/// That something was said already, and the data say no.
+#[derive(Debug, thiserror::Error)]
+#[error("the data say no")]
+struct Silent;
+
+pub(crate) fn main() -> ExitCode {
+    let cli = Cli::parse();
+    // Without a handler an interrupt ends the process all the same, and leaves the temporary of a file behind.
+    if let Err(error) = ctrlc::set_handler(|| atomic::abort(130)) {
+        eprintln!("sig: warning: cannot handle interrupts: {error}");
+    }
+    match cli.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => explain(&error),
+    }
+}
+
+/// Prints an error with its causes, and tells the exit code.
+fn explain(error: &anyhow::Error) -> ExitCode {
+    let is_broken_pipe = |cause: &(dyn std::error::Error + 'static)| {
+        cause.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+    };
+    if error.chain().any(is_broken_pipe) {
+        // Whoever reads has read enough.
+        return ExitCode::SUCCESS;
+    }
+    if error.is::<Silent>() {
+        return ExitCode::from(1);
+    }
+    let mut message = error.to_string();
+    for cause in error.chain().skip(1) {
+        let cause = cause.to_string();
+        // Errors of the library say their cause themselves.
+        if !message.contains(&cause) {
+            message.push_str(": ");
+            message.push_str(&cause);
+        }
+    }
+    eprintln!("sig: {message}");
+    ExitCode::from(if error.is::<UsageError>() { 2 } else { 1 })
+}

@@ -1,0 +1,122 @@
+//! Writing: data to standard output or, whole or not at all, to a file.
+
+use std::fmt::Display;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use serde::Serialize;
+use sig_tools::store::atomic::{self, Existing};
+
+/// Whether a path stands for standard output.
+pub(super) fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes data to standard output.
+pub(super) fn stdout(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    fill(&mut out)?;
+    out.flush()
+}
+
+/// Writes one JSON value on one line of standard output.
+pub(super) fn json(value: &impl Serialize) -> io::Result<()> {
+    stdout(|out| {
+        serde_json::to_writer(&mut *out, value)?;
+        writeln!(out)
+    })
+}
+
+/// Checks, before the long work, that [`to_path`] will not be refused.
+pub(super) fn check(path: &Path, existing: Existing) -> anyhow::Result<()> {
+    if !is_stdout(path) {
+        atomic::check(path, existing)?;
+    }
+    Ok(())
+}
+
+/// Writes a file, or to standard output if the path is `-`.
+pub(super) fn to_path(
+    path: &Path,
+    existing: Existing,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> anyhow::Result<()> {
+    if is_stdout(path) {
+        stdout(fill)?;
+    } else {
+        atomic::write(path, existing, fill)?;
+    }
+    Ok(())
+}
+
+/// The arguments of a file to be written.
+#[derive(clap::Args)]
+pub(super) struct Target {
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub(super) output: std::path::PathBuf,
+
+    /// Replace OUT if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+impl Target {
+    pub(super) fn existing(&self) -> Existing {
+        if self.force { Existing::Replace } else { Existing::Refuse }
+    }
+}
+
+/// A number with its digits in groups of three.
+pub(super) fn grouped(number: impl Display) -> String {
+    let digits = number.to_string();
+    let (sign, digits) = digits.strip_prefix('-').map_or(("", digits.as_str()), |digits| ("-", digits));
+    let mut grouped = sign.to_owned();
+    for (position, digit) in digits.char_indices() {
+        if position > 0 && (digits.len() - position) % 3 == 0 {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+/// Writes rows as a table: the first column to the left, the others to the right, two blanks between.
+pub(super) fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column| rows.iter().filter_map(|row| row.get(column)).map(|cell: &String| cell.chars().count()).max();
+    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    for row in rows {
+        let mut line = String::new();
+        for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+            if column == 0 {
+                line += &format!("{cell:<width$}");
+            } else {
+                line += &format!("  {cell:>width$}");
+            }
+        }
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{grouped, table};
+
+    #[test]
+    fn digits_are_grouped_from_the_right() {
+        let numbers = [(0, "0"), (999, "999"), (1000, "1,000"), (-1_234_567, "-1,234,567"), (-123, "-123")];
+        for (number, text) in numbers {
+            assert_eq!(grouped(number), text);
+        }
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let rows = [vec!["κ".to_owned(), "1".to_owned()], vec!["long".to_owned(), "22".to_owned(), "3".to_owned()]];
+        let mut out = Vec::new();
+        table(&rows, &mut out).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap(), "κ      1\nlong  22  3\n");
+    }
+}

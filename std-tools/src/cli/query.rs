@@ -1,0 +1,192 @@
+//! `sig query`: one relation of one simplex.
+
+use std::io;
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use serde::Serialize;
+use sig_core::{Complex, Dim, Index, SimplexId, with_complex};
+use sig_tools::OwnedScratch;
+use sig_tools::names::{FindError, find_simplex, simplex_labels, simplex_name};
+use sig_tools::store::Access;
+
+use super::input::Input;
+use super::{UsageError, output};
+
+/// Print a relation of a simplex: its boundary, star, link, …
+///
+/// Answers come in the order of the ids, one simplex a line as labels separated by commas; with --json an array of
+/// arrays of labels.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  sig query bunny.sigc star 17                  everything around vertex 17
+  sig query bunny.sigc coboundary 17 --dim 2    the triangles at vertex 17
+  sig query bunny.sigc boundary 3,17,20         the edges of a triangle
+  sig query bunny.sigc link 0,17 --json         the link of an edge, as JSON
+  sig query bunny.sigc adjacent 3,17,20         the triangles that share an edge with a triangle
+  sig query bunny.sigc adjacent 3,17,20 --dim 0 those that share a vertex with it")]
+pub(super) struct Args {
+    /// The file; `-` is standard input
+    file: PathBuf,
+
+    /// The relation
+    relation: Relation,
+
+    /// The simplex: the labels of its vertices, separated by commas, in any order
+    #[arg(allow_hyphen_values = true)]
+    simplex: String,
+
+    /// The dimension: of the faces or cofaces for `boundary` and `coboundary` (the next one by default), of the shared
+    /// faces for `adjacent` (one less than that of the simplex by default)
+    #[arg(long, value_name = "Q")]
+    dim: Option<Dim>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Relation {
+    /// The vertices of the simplex
+    Vertices,
+    /// The faces of one dimension
+    Boundary,
+    /// The cofaces of one dimension
+    Coboundary,
+    /// The simplex and all its cofaces
+    Star,
+    /// The faces of its star that do not meet it
+    Link,
+    /// The simplex and all its faces
+    Closure,
+    /// The simplices of its dimension that share a facet with it; for a vertex, the other ends of its edges
+    Adjacent,
+    /// The clusters of top simplices around it
+    Clusters,
+    /// The simplex itself
+    Find,
+}
+
+/// A cluster with its simplices, by their labels.
+#[derive(Serialize)]
+struct Cluster {
+    dimension: Dim,
+    representative: Vec<String>,
+    members: Vec<Vec<String>>,
+}
+
+impl Args {
+    pub(super) fn run(self) -> anyhow::Result<()> {
+        let labels: Vec<&str> = self.simplex.split(',').map(str::trim).collect();
+        if labels.contains(&"") {
+            let message = format!("'{}' is no simplex: give the labels of its vertices, as in 0,17", self.simplex);
+            return Err(UsageError(message).into());
+        }
+        let input = Input::open(&self.file, Access::Random)?;
+        with_complex!(input.complex(), complex => self.answer(&complex, &labels))
+    }
+
+    fn answer<I: Index>(&self, complex: &Complex<'_, I>, labels: &[&str]) -> anyhow::Result<()> {
+        let simplex = find_simplex(complex, labels).map_err(|error| match error {
+            FindError::RepeatedVertex { .. } => UsageError(error.to_string()).into(),
+            error => anyhow::Error::new(error).context(self.file.display().to_string()),
+        })?;
+        self.check_dim(complex, simplex)?;
+        let mut memory = OwnedScratch::new(complex);
+        if self.relation == Relation::Clusters {
+            let clusters = clusters(complex, simplex, &mut memory);
+            let printed = if self.json { output::json(&clusters) } else { print_clusters(&clusters) };
+            return Ok(printed?);
+        }
+        let mut found = self.find(complex, simplex, &mut memory);
+        found.sort_unstable();
+        if self.json {
+            let found: Vec<_> = found.into_iter().map(|simplex| simplex_labels(complex, simplex)).collect();
+            output::json(&found)?;
+        } else {
+            output::stdout(|out| {
+                found.iter().try_for_each(|&simplex| writeln!(out, "{}", simplex_name(complex, simplex)))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a dimension where there is none to choose, or that the relation cannot have.
+    fn check_dim<I: Index>(&self, complex: &Complex<'_, I>, simplex: SimplexId) -> Result<(), UsageError> {
+        let Some(dim) = self.dim else { return Ok(()) };
+        let (own, top) = (complex.dim_of(simplex).unwrap_or(0), complex.dim().unwrap_or(0));
+        let (name, range) = match self.relation {
+            Relation::Boundary => ("boundary", 0..own),
+            Relation::Adjacent => ("adjacent", 0..own),
+            Relation::Coboundary => ("coboundary", own + 1..top + 1),
+            _ => return Err(UsageError("--dim is for boundary, coboundary and adjacent only".to_owned())),
+        };
+        if range.contains(&dim) {
+            return Ok(());
+        }
+        let allowed = match range.clone().count() {
+            0 => format!("no dimension can be chosen in a complex of dimension {top}"),
+            1 => format!("only --dim {} is possible", range.start),
+            _ => format!("--dim must be from {} to {}", range.start, range.end - 1),
+        };
+        Err(UsageError(format!("--dim {dim}: for {name} of a simplex of dimension {own} {allowed}")))
+    }
+
+    fn find<I: Index>(
+        &self,
+        complex: &Complex<'_, I>,
+        simplex: SimplexId,
+        memory: &mut OwnedScratch<I>,
+    ) -> Vec<SimplexId> {
+        let own = complex.dim_of(simplex).unwrap_or(0);
+        match self.relation {
+            Relation::Vertices => complex.vertices(simplex).map(SimplexId::from).collect(),
+            Relation::Boundary => match self.dim {
+                Some(dim) => complex.boundary(simplex, dim).collect(),
+                None => complex.facets(simplex).collect(),
+            },
+            Relation::Coboundary => {
+                let dim = self.dim.unwrap_or(own + 1);
+                memory.run(|scratch| Ok(complex.coboundary(simplex, dim, scratch)?.collect()))
+            }
+            Relation::Star => memory.run(|scratch| Ok(complex.star(simplex, scratch)?.collect())),
+            Relation::Link => memory.run(|scratch| Ok(complex.link(simplex, scratch)?.collect())),
+            Relation::Closure => complex.closure(simplex).collect(),
+            Relation::Adjacent => memory.run(|scratch| {
+                Ok(match self.dim {
+                    Some(dim) => complex.k_adjacency(simplex, dim, scratch)?.collect(),
+                    None => complex.adjacency(simplex, scratch)?.collect(),
+                })
+            }),
+            Relation::Clusters | Relation::Find => vec![simplex],
+        }
+    }
+}
+
+fn clusters<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId, memory: &mut OwnedScratch<I>) -> Vec<Cluster> {
+    let cluster = |cluster: sig_core::relations::Cluster| {
+        let representative = cluster.representative;
+        let mut members: Vec<SimplexId> =
+            memory.run(|scratch| Ok(complex.cluster_members(simplex, representative, scratch)?.collect()));
+        members.sort_unstable();
+        Cluster {
+            dimension: cluster.dim,
+            representative: simplex_labels(complex, representative),
+            members: members.into_iter().map(|member| simplex_labels(complex, member)).collect(),
+        }
+    };
+    complex.clusters(simplex).map(cluster).collect()
+}
+
+/// Each cluster with its simplices, one a line and indented.
+fn print_clusters(clusters: &[Cluster]) -> io::Result<()> {
+    output::stdout(|out| {
+        for Cluster { dimension, representative, members } in clusters {
+            writeln!(out, "cluster of dimension {dimension}, representative {}", representative.join(","))?;
+            members.iter().try_for_each(|member| writeln!(out, "  {}", member.join(",")))?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,130 @@
+//! `sig verify`: whether a file is whole and right.
+
+use std::io;
+use std::path::PathBuf;
+
+use serde::Serialize;
+use sig_core::AnyComplex;
+use sig_core::format::FormatError;
+use sig_core::with_complex;
+use sig_tools::build::BuildOptions;
+use sig_tools::store::{Access, verify};
+
+use super::input::Input;
+use super::{Silent, output, progress};
+
+/// Check a file: header, structure, checksums, canonical order, and the relations
+///
+/// The checks stop at the first thing that is wrong, say what and where, and the exit code is 1.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  sig verify bunny.sigc
+  sig verify bunny.sigc --rebuild    also compute the partial co-boundary relations again and compare")]
+pub(super) struct Args {
+    /// The file; `-` is standard input
+    file: PathBuf,
+
+    /// Also build the complex again from its top simplices and compare all relations
+    #[arg(long)]
+    rebuild: bool,
+
+    /// Print a JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    file: String,
+    ok: bool,
+    checks: Vec<Check>,
+}
+
+#[derive(Serialize)]
+struct Check {
+    name: &'static str,
+    /// `ok`, `failed`, or `skipped`.
+    status: &'static str,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    message: String,
+}
+
+impl Check {
+    fn new(name: &'static str, result: Result<String, String>) -> Self {
+        let (status, message) = match result {
+            Ok(message) => ("ok", message),
+            Err(message) => ("failed", message),
+        };
+        Self { name, status, message }
+    }
+}
+
+impl Args {
+    pub(super) fn run(self) -> anyhow::Result<()> {
+        let mut report = Report { file: self.file.display().to_string(), ok: true, checks: Vec::new() };
+        self.check(&mut |check| {
+            report.ok &= check.status != "failed";
+            if !self.json {
+                print(&report.file, &check)?;
+            }
+            report.checks.push(check);
+            Ok(())
+        })?;
+        if self.json {
+            output::json(&report)?;
+        }
+        if report.ok { Ok(()) } else { Err(Silent.into()) }
+    }
+
+    /// Runs the checks up to the first that fails.
+    fn check(&self, tell: &mut dyn FnMut(Check) -> io::Result<()>) -> io::Result<()> {
+        let input = match Input::open(&self.file, Access::Sequential) {
+            Ok(input) => input,
+            Err(error) => return tell(Check::new("structure", Err(error.kind.to_string()))),
+        };
+        tell(Check::new("structure", Ok("header, section table, lengths".to_owned())))?;
+        match verify::checksums(&input.file_bytes()) {
+            Ok(blocks) => tell(Check::new("checksums", Ok(format!("{blocks} blocks"))))?,
+            Err(error @ FormatError::NoChecksums) => {
+                tell(Check { name: "checksums", status: "skipped", message: error.to_string() })?;
+            }
+            Err(error) => return tell(Check::new("checksums", Err(error.to_string()))),
+        }
+        let complex = input.complex();
+        if let Err(error) = with_complex!(complex, complex => complex.validate()) {
+            return tell(Check::new("arrays", Err(error.to_string())));
+        }
+        tell(Check::new("arrays", Ok("canonical order, boundary, partial co-boundary, labels".to_owned())))?;
+        if self.rebuild {
+            let result = rebuild(complex).map_err(|error| error.to_string());
+            tell(Check::new("rebuild", result.map(|()| "the same from the top simplices".to_owned())))?;
+        }
+        Ok(())
+    }
+}
+
+fn rebuild(complex: AnyComplex<'_>) -> Result<(), verify::RebuildError> {
+    let bars = progress::Phases::new();
+    let show = |phase, done, total| bars.show(phase, done, total);
+    let progress = progress::is_watched().then_some(&show as sig_tools::build::Progress<'_>);
+    let options = BuildOptions { progress, ..BuildOptions::default() };
+    let result = with_complex!(complex, complex => verify::rebuild(&complex, &options));
+    bars.clear();
+    result
+}
+
+/// A check that passed is data, one that failed is also an error.
+fn print(file: &str, check: &Check) -> io::Result<()> {
+    output::stdout(|out| {
+        let (name, status, message) = (check.name, check.status, &check.message);
+        match status {
+            "failed" => writeln!(out, "{name:<10}  {status}"),
+            _ => writeln!(out, "{name:<10}  {status:<7}  {message}"),
+        }
+    })?;
+    if check.status == "failed" {
+        eprintln!("sig: {file}: {}", check.message);
+    }
+    Ok(())
+}

@@ -1,0 +1,225 @@
+//! Writers: the top simplices of a complex in the formats of other programs, one file a format.
+//!
+//! A writer refuses what its format cannot hold, before the first byte, and says what does; what it must leave out
+//! though the simplices are all there (labels, coordinates) it reports as a [`Note`]. Orientations are those of the
+//! input.
+
+mod mesh;
+mod obj;
+mod off;
+mod ply;
+mod simplex_list;
+#[cfg(test)]
+mod tests;
+mod vtu;
+
+use std::fmt;
+use std::io::{self, Write};
+
+use sig_core::{Complex, Dim, Index};
+
+use mesh::Mesh;
+
+/// A format that can be written.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum Format {
+    /// Geomview OFF: triangles, edges as polygons of two corners, points of any dimension.
+    Off,
+    /// Wavefront OBJ: faces, lines, points.
+    Obj,
+    /// Stanford PLY in text: faces and edges.
+    Ply,
+    /// One top simplex a line by its labels: any dimension.
+    SimplexList,
+    /// VTK's unstructured grid for ParaView: tetrahedra, triangles, lines, vertices, all in one grid.
+    Vtu,
+}
+
+impl Format {
+    /// All formats, in the order in which help texts list them.
+    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Ply, Self::SimplexList, Self::Vtu];
+
+    /// The name of the format on a command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::SimplexList => "simplices",
+            Self::Vtu => "vtu",
+        }
+    }
+
+    /// The extensions of file names that stand for the format, in lower case, without the dot.
+    #[must_use]
+    pub const fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Off => &["off"],
+            Self::Obj => &["obj"],
+            Self::Ply => &["ply"],
+            Self::SimplexList => &["simplices", "facets", "lst", "txt"],
+            Self::Vtu => &["vtu"],
+        }
+    }
+
+    /// One line on what the format holds.
+    #[must_use]
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::Off => "Geomview OFF: triangles and edges",
+            Self::Obj => "Wavefront OBJ: triangles, lines and points",
+            Self::Ply => "Stanford PLY in text: triangles and edges",
+            Self::SimplexList => "one top simplex a line by its vertex labels: any dimension, no coordinates",
+            Self::Vtu => "VTK unstructured grid, for ParaView: tetrahedra, triangles, lines and vertices",
+        }
+    }
+
+    /// The format with this name or extension, upper and lower case being the same.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        let name = name.to_ascii_lowercase();
+        Self::ALL.iter().copied().find(|format| format.name() == name || format.extensions().contains(&&*name))
+    }
+
+    /// The greatest dimension of a simplex that the format holds.
+    const fn max_dim(self) -> Dim {
+        match self {
+            Self::Off | Self::Obj | Self::Ply => 2,
+            Self::Vtu => 3,
+            Self::SimplexList => sig_core::MAX_DIM,
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Why a complex is not exported.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The format has no simplices of so many dimensions.
+    #[error("the complex has dimension {dim}, but {format} holds simplices up to dimension {} only; {}",
+        format.max_dim(), if *dim <= Format::Vtu.max_dim() { "use vtu or simplices" } else { "use simplices" })]
+    Dimension {
+        /// The format.
+        format: Format,
+        /// The dimension of the complex.
+        dim: Dim,
+    },
+    /// The format needs coordinates, and the complex has none.
+    #[error("the complex has no coordinates, without which {format} cannot be written; use simplices")]
+    NoCoordinates {
+        /// The format.
+        format: Format,
+    },
+    /// The format does not hold points of so many coordinates.
+    #[error("the vertices have {components} coordinates, which {format} does not hold; use {}",
+        if *components <= 3 { "off or vtu" } else { "off (up to dimension 2) or simplices" })]
+    Coordinates {
+        /// The format.
+        format: Format,
+        /// Coordinates a vertex.
+        components: usize,
+    },
+    /// A label that would be read back as something else.
+    #[error("vertex label {label:?} cannot stand in a list of simplices: it has a separator or a bracket, or is empty")]
+    Label {
+        /// The label.
+        label: String,
+    },
+    /// Writing failed.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+}
+
+/// What an export leaves out or changes, all top simplices being there.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Note {
+    /// The vertices are numbered anew, in the order of their labels, which the format cannot hold.
+    LabelsLeftOut,
+    /// There are coordinates, which the format does not have.
+    CoordinatesLeftOut,
+    /// Points of fewer than three coordinates were filled up with zeros.
+    CoordinatesPadded,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::LabelsLeftOut => {
+                "vertices are numbered anew in the order of their labels, which the format cannot hold"
+            }
+            Self::CoordinatesLeftOut => "coordinates are left out, for the format has none",
+            Self::CoordinatesPadded => "points have fewer than three coordinates and are filled up with zeros",
+        })
+    }
+}
+
+/// Checks whether `format` holds the complex: what [`export`] would refuse before its first byte.
+///
+/// # Errors
+/// All of [`ExportError`] but [`ExportError::Io`].
+pub fn check<I: Index>(complex: &Complex<'_, I>, format: Format) -> Result<(), ExportError> {
+    if let Some(dim) = complex.dim().filter(|&dim| dim > format.max_dim()) {
+        return Err(ExportError::Dimension { format, dim });
+    }
+    if format == Format::SimplexList {
+        return simplex_list::check_labels(complex);
+    }
+    let components = match complex.coordinates() {
+        Some(section) => section.components as usize,
+        // Nothing needs no coordinates.
+        None if complex.num_vertices() == 0 => 3,
+        None => return Err(ExportError::NoCoordinates { format }),
+    };
+    let holds = match format {
+        Format::Obj => components == 3,
+        Format::Ply => (2..=3).contains(&components),
+        Format::Vtu => components <= 3,
+        Format::Off | Format::SimplexList => true,
+    };
+    if holds { Ok(()) } else { Err(ExportError::Coordinates { format, components }) }
+}
+
+/// Writes the top simplices of a complex to `out`, which should be buffered, and returns what had to be left out.
+///
+/// Cost: linear in the complex and the output; the vertices are sorted by label if they are not in that order.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn export<I: Index>(
+    complex: &Complex<'_, I>,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<Vec<Note>, ExportError> {
+    check(complex, format)?;
+    let mut notes = Vec::new();
+    if format == Format::SimplexList {
+        simplex_list::write(complex, out)?;
+        notes.extend(complex.coordinates().map(|_| Note::CoordinatesLeftOut));
+        return Ok(notes);
+    }
+    let mesh = Mesh::new(complex);
+    let first_number = match format {
+        Format::Off => off::write(&mesh, out).map(|()| Some(0)),
+        Format::Obj => obj::write(&mesh, out).map(|()| Some(1)),
+        Format::Ply => ply::write(&mesh, out).map(|()| Some(0)),
+        Format::Vtu | Format::SimplexList => vtu::write(&mesh, out).map(|()| None),
+    }?;
+    match first_number {
+        Some(first) if !mesh.is_numbered_from(first) => notes.push(Note::LabelsLeftOut),
+        None if mesh.integer_labels().is_none() => notes.push(Note::LabelsLeftOut),
+        _ => {}
+    }
+    if format == Format::Vtu && mesh.components() < 3 {
+        notes.push(Note::CoordinatesPadded);
+    }
+    Ok(notes)
+}

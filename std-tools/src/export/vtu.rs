@@ -1,0 +1,101 @@
+//! VTK's XML format for unstructured grids: cells of all dimensions in one grid, arrays inline in base64.
+//!
+//! Cells carry their dimension, points their label where labels are integers, so that both can be shown and selected.
+
+use std::io::{self, Write};
+
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderWriter;
+use sig_core::Index;
+
+use super::mesh::Mesh;
+
+/// VTK's cell types of a vertex, a line, a triangle and a tetrahedron.
+const CELL_TYPES: [u8; 4] = [1, 3, 5, 10];
+
+pub(super) fn write<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+    let counts = mesh.num_cells();
+    let num_cells: usize = counts.iter().sum();
+    let num_corners: usize = counts.iter().enumerate().map(|(dim, count)| (dim + 1) * count).sum();
+    writeln!(out, r#"<?xml version="1.0"?>"#)?;
+    writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
+    writeln!(out, "<UnstructuredGrid>")?;
+    writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{num_cells}">"#, mesh.num_vertices())?;
+    if let Some(labels) = mesh.integer_labels() {
+        writeln!(out, r#"<PointData Scalars="label">"#)?;
+        array(out, r#"type="UInt64" Name="label""#, mesh.num_vertices() * 8, |data| {
+            labels.into_iter().try_for_each(|label| data.write_all(&label.to_le_bytes()))
+        })?;
+        writeln!(out, "</PointData>")?;
+    }
+    writeln!(out, r#"<CellData Scalars="dimension">"#)?;
+    array(out, r#"type="UInt8" Name="dimension""#, num_cells, |data| {
+        mesh.cells(0..=3, |cell| data.write_all(&[to_u8(cell.len() - 1)]))
+    })?;
+    writeln!(out, "</CellData>\n<Points>")?;
+    points(mesh, out)?;
+    writeln!(out, "</Points>\n<Cells>")?;
+    array(out, r#"type="Int64" Name="connectivity""#, num_corners * 8, |data| {
+        mesh.cells(0..=3, |cell| cell.iter().try_for_each(|&vertex| data.write_all(&to_i64(vertex))))
+    })?;
+    array(out, r#"type="Int64" Name="offsets""#, num_cells * 8, |data| {
+        let mut end = 0;
+        mesh.cells(0..=3, |cell| {
+            end += cell.len();
+            data.write_all(&to_i64(end))
+        })
+    })?;
+    array(out, r#"type="UInt8" Name="types""#, num_cells, |data| {
+        mesh.cells(0..=3, |cell| data.write_all(&[CELL_TYPES[cell.len() - 1]]))
+    })?;
+    writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
+}
+
+/// The points, filled up to three coordinates, in their own precision.
+fn points<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+    let (name, bytes) = if mesh.is_single() { ("Float32", 4) } else { ("Float64", 8) };
+    let attributes = format!(r#"type="{name}" NumberOfComponents="3""#);
+    array(out, &attributes, mesh.num_vertices() * 3 * bytes, |data| {
+        for vertex in mesh.vertices() {
+            let mut point = [0.0; 3];
+            for (value, row) in point.iter_mut().zip(mesh.row(vertex)) {
+                *value = mesh.value(row);
+            }
+            for value in point {
+                if mesh.is_single() {
+                    // Exact: it was single before.
+                    #[expect(clippy::cast_possible_truncation)]
+                    data.write_all(&(value as f32).to_le_bytes())?;
+                } else {
+                    data.write_all(&value.to_le_bytes())?;
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// An array of so many bytes, which are what `fill` writes.
+fn array(
+    out: &mut dyn Write,
+    attributes: &str,
+    bytes: usize,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    write!(out, r#"<DataArray {attributes} format="binary">"#)?;
+    let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
+    encoder.write_all(&(bytes as u64).to_le_bytes())?;
+    fill(&mut encoder)?;
+    encoder.finish()?;
+    drop(encoder);
+    writeln!(out, "</DataArray>")
+}
+
+fn to_i64(number: usize) -> [u8; 8] {
+    (number as u64).to_le_bytes()
+}
+
+/// A dimension up to 3 as a byte.
+fn to_u8(dim: usize) -> u8 {
+    u8::try_from(dim).unwrap_or(u8::MAX)
+}

@@ -1,0 +1,264 @@
+//! Files that are there whole or not at all.
+//!
+//! A file is written under a temporary name in the directory where it belongs, brought to disk, and renamed; the
+//! directory is brought to disk after that. Whatever ends the work before (a full disk, an error, a signal), the old file
+//! is untouched and the temporary is removed.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::NamedTempFile;
+
+/// What becomes of a file that has the name already.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Existing {
+    /// It stays, and writing is refused.
+    #[default]
+    Refuse,
+    /// The new file takes its name.
+    Replace,
+}
+
+/// Why a file is not written. The name it was to have is in the state it was in before.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The name is taken.
+    #[error("{}: the file exists; --force replaces it", path.display())]
+    Exists {
+        /// The name.
+        path: PathBuf,
+    },
+    /// The name is that of a directory, a device or a pipe, which cannot be replaced by a file.
+    #[error("{}: not a file that could be replaced; write to another name, or to `-` for standard output", path.display())]
+    NotAFile {
+        /// The name.
+        path: PathBuf,
+    },
+    /// The directory is not there, or no file can be made in it.
+    #[error("{}: cannot create a file in {}: {error}", path.display(), directory.display())]
+    Create {
+        /// The name.
+        path: PathBuf,
+        /// The directory.
+        directory: PathBuf,
+        /// What the system says.
+        #[source]
+        error: io::Error,
+    },
+    /// Writing failed: a full disk, for one.
+    #[error("{}: cannot write: {error}; nothing was changed", path.display())]
+    Write {
+        /// The name.
+        path: PathBuf,
+        /// What the system says.
+        #[source]
+        error: io::Error,
+    },
+}
+
+/// Checks, before the long work starts, that a file called `path` may be written.
+///
+/// [`write`] checks again, without a gap between the check and the rename.
+///
+/// # Errors
+/// [`WriteError::Exists`] and [`WriteError::NotAFile`]; [`WriteError::Create`] if there is no such directory.
+pub fn check(path: &Path, existing: Existing) -> Result<(), WriteError> {
+    match fs::metadata(path) {
+        Ok(found) if !found.is_file() => return Err(WriteError::NotAFile { path: path.to_owned() }),
+        Ok(_) if existing == Existing::Refuse => return Err(WriteError::Exists { path: path.to_owned() }),
+        _ => {}
+    }
+    let directory = directory_of(path);
+    let create = |error| WriteError::Create { path: path.to_owned(), directory: directory.to_owned(), error };
+    let found = fs::metadata(directory).map_err(create)?;
+    if found.is_dir() { Ok(()) } else { Err(create(io::ErrorKind::NotADirectory.into())) }
+}
+
+/// Writes a file called `path` with what `fill` writes, buffered: when this returns `Ok`, it is on disk, whole and under
+/// its name; otherwise nothing has changed.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write(
+    path: &Path,
+    existing: Existing,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), WriteError> {
+    check(path, existing)?;
+    let failed = |error| WriteError::Write { path: path.to_owned(), error };
+    let mut temporary = Temporary::create(path)?;
+    let file = temporary.file.as_file_mut();
+    let mut out = BufWriter::with_capacity(1 << 16, file);
+    fill(&mut out).and_then(|()| out.flush()).map_err(failed)?;
+    drop(out);
+    temporary.file.as_file().sync_all().map_err(failed)?;
+    temporary.persist(path, existing)?;
+    sync_directory(directory_of(path)).map_err(failed)
+}
+
+/// The temporaries that exist.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn temporaries() -> MutexGuard<'static, Vec<PathBuf>> {
+    TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes all temporaries and ends the process: for the handler of a signal, not for a signal's context.
+///
+/// No file is created or renamed in between: a file that is being finished is there under its name, or not at all.
+pub fn abort(exit_code: i32) -> ! {
+    // Held until the process ends.
+    let temporaries = temporaries();
+    for path in temporaries.iter() {
+        // There is nobody left to tell.
+        let _ = fs::remove_file(path);
+    }
+    std::process::exit(exit_code)
+}
+
+/// A temporary that [`abort`] knows of.
+struct Temporary {
+    file: NamedTempFile,
+    /// After the file: it is removed before it is forgotten.
+    _registered: Registered,
+}
+
+/// A name in the list of temporaries, as long as this lives.
+struct Registered(PathBuf);
+
+impl Drop for Registered {
+    fn drop(&mut self) {
+        temporaries().retain(|path| *path != self.0);
+    }
+}
+
+impl Temporary {
+    fn create(path: &Path) -> Result<Self, WriteError> {
+        let directory = directory_of(path);
+        let mut prefix = std::ffi::OsString::from(".");
+        prefix.push(path.file_name().unwrap_or_default());
+        prefix.push(".");
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix).suffix(".tmp");
+        // A temporary is private by default; this one will be the file, and is given the permissions of any new file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut temporaries = temporaries();
+        let file = builder.tempfile_in(directory).map_err(|error| WriteError::Create {
+            path: path.to_owned(),
+            directory: directory.to_owned(),
+            error,
+        })?;
+        temporaries.push(file.path().to_owned());
+        drop(temporaries);
+        let _registered = Registered(file.path().to_owned());
+        Ok(Self { file, _registered })
+    }
+
+    fn persist(self, path: &Path, existing: Existing) -> Result<(), WriteError> {
+        let Self { file, _registered } = self;
+        let persisted = {
+            // So that no signal ends the process between the two halves of a rename.
+            let _guard = temporaries();
+            match existing {
+                Existing::Refuse => file.persist_noclobber(path),
+                Existing::Replace => file.persist(path),
+            }
+        };
+        match persisted {
+            Ok(_) => Ok(()),
+            Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => {
+                Err(WriteError::Exists { path: path.to_owned() })
+            }
+            Err(failed) => Err(WriteError::Write { path: path.to_owned(), error: failed.error }),
+        }
+    }
+}
+
+/// The directory in which a file called `path` is.
+fn directory_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Brings a directory to disk, and with it a rename in it.
+fn sync_directory(directory: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(directory)?.sync_all() } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn refuses_or_replaces_a_file_of_the_name() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.sigc");
+        write(&path, Existing::Refuse, |out| out.write_all(b"one")).unwrap();
+        let refused = write(&path, Existing::Refuse, |out| out.write_all(b"two"));
+        assert!(matches!(refused, Err(WriteError::Exists { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"one");
+        write(&path, Existing::Replace, |out| out.write_all(b"three")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"three");
+        assert_eq!(names(directory.path()), ["a.sigc"]);
+    }
+
+    #[test]
+    fn a_file_that_appears_in_the_meantime_stays() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.sigc");
+        let refused = write(&path, Existing::Refuse, |out| {
+            fs::write(&path, b"theirs")?;
+            out.write_all(b"ours")
+        });
+        assert!(matches!(refused, Err(WriteError::Exists { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"theirs");
+        assert_eq!(names(directory.path()), ["a.sigc"]);
+    }
+
+    #[test]
+    fn an_error_leaves_the_old_file_and_no_debris() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.sigc");
+        fs::write(&path, b"old").unwrap();
+        let failed = write(&path, Existing::Replace, |out| {
+            out.write_all(&[0; 1 << 20])?;
+            Err(io::ErrorKind::StorageFull.into())
+        });
+        assert!(matches!(failed, Err(WriteError::Write { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(directory.path()), ["a.sigc"]);
+    }
+
+    #[test]
+    fn directories_and_missing_directories_are_told_apart() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| check(&directory.path().join(name), Existing::Replace);
+        assert!(matches!(check(directory.path(), Existing::Replace), Err(WriteError::NotAFile { .. })));
+        assert!(matches!(at("missing/a.sigc"), Err(WriteError::Create { .. })));
+        fs::write(directory.path().join("file"), b"").unwrap();
+        assert!(matches!(at("file/a.sigc"), Err(WriteError::Create { .. })));
+        assert!(at("file").is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_new_file_has_the_permissions_of_any_other() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = tempfile::tempdir().unwrap();
+        let (ours, plain) = (directory.path().join("ours"), directory.path().join("plain"));
+        write(&ours, Existing::Refuse, |_| Ok(())).unwrap();
+        fs::write(&plain, b"").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&plain));
+    }
+}

@@ -1,0 +1,312 @@
+//! From the builder's arrays to the bytes of a file.
+//!
+//! The arrays are written as they are where they have the width of the file; only a narrower or wider file needs
+//! copies. The layout of the bytes is the business of [`sig_core::format::Encoder`].
+
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+use sig_core::format::{self, Column, Encoder, Kind, Section, SectionKind};
+use sig_core::{Index, IndexWidth};
+
+use super::AlignedBytes;
+use crate::build::{Arrays, Built, SigArrays};
+use crate::soup::{Labels, Scalars};
+
+/// How a complex is encoded. The default: the least width, tree sections, checksums, no provenance.
+#[derive(Clone, Copy, Debug)]
+pub struct EncodeOptions<'a> {
+    /// The index width; the least that fits if it is not given.
+    pub width: Option<IndexWidth>,
+    /// Whether the file carries the child offsets and last vertices, which make [`find`](sig_core::Complex::find) fast.
+    pub tree: bool,
+    /// Whether the file carries checksums.
+    pub checksums: bool,
+    /// Where the complex comes from, in the caller's words; nothing of the kind is added by itself.
+    pub provenance: Option<&'a str>,
+}
+
+impl Default for EncodeOptions<'_> {
+    fn default() -> Self {
+        Self { width: None, tree: true, checksums: true, provenance: None }
+    }
+}
+
+/// Why a complex cannot be encoded.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EncodeError {
+    /// The width that was asked for is too narrow.
+    #[error(
+        "indices of {} bits hold numbers up to {}, but this complex has ids or list offsets up to {largest}; \
+         {} bits are enough", width.bits(), width.max_value(), least.bits()
+    )]
+    TooNarrow {
+        /// The width that was asked for.
+        width: IndexWidth,
+        /// The largest number to be held.
+        largest: u64,
+        /// The least width that holds it.
+        least: IndexWidth,
+    },
+    /// The sections cannot be a file: see [`format::EncodeError`].
+    #[error("cannot encode the complex: {0}")]
+    Format(#[from] format::EncodeError),
+}
+
+/// A complex, laid out as a file.
+///
+/// Built from the same complex with the same options it gives the same bytes, on every host.
+#[derive(Clone, Debug)]
+pub struct Encoding<'a> {
+    width: IndexWidth,
+    dims: usize,
+    num_simplices: usize,
+    checksums: bool,
+    /// The indices in the order of the sections, with what kind of section they are.
+    indices: Vec<(SectionKind, Indices<'a>)>,
+    flags: (&'a [u8], usize),
+    last_vertices: Option<Indices<'a>>,
+    labels: EncodedLabels<'a>,
+    coordinates: Option<(u32, Column<'a>)>,
+    parity: Option<(&'a [u8], usize)>,
+    provenance: Option<&'a str>,
+}
+
+/// Integers of one of the widths of a file, borrowed where the builder has them at that width.
+#[derive(Clone, Debug)]
+enum Indices<'a> {
+    Bits16(Vec<u16>),
+    Bits32(Cow<'a, [u32]>),
+    Bits64(Cow<'a, [u64]>),
+}
+
+impl<'a> Indices<'a> {
+    fn from_u32(values: &'a [u32], width: IndexWidth) -> Self {
+        match width {
+            IndexWidth::Bits16 => Self::Bits16(convert(values)),
+            IndexWidth::Bits32 => Self::Bits32(values.into()),
+            IndexWidth::Bits64 => Self::Bits64(convert(values).into()),
+        }
+    }
+
+    fn from_u64(values: &'a [u64], width: IndexWidth) -> Self {
+        match width {
+            IndexWidth::Bits16 => Self::Bits16(convert(values)),
+            IndexWidth::Bits32 => Self::Bits32(convert(values).into()),
+            IndexWidth::Bits64 => Self::Bits64(values.into()),
+        }
+    }
+
+    fn column(&self) -> Column<'_> {
+        match self {
+            Self::Bits16(values) => Column::U16(values),
+            Self::Bits32(values) => Column::U32(values),
+            Self::Bits64(values) => Column::U64(values),
+        }
+    }
+}
+
+/// The same numbers at another width that is known to hold them; stop codes stay stop codes.
+///
+/// The child offsets end with the number of simplices, which is one more than the largest id: where it does not fit
+/// below the stop code, it *is* the stop code of that width, as a number.
+fn convert<A: Index, B: Index>(values: &[A]) -> Vec<B> {
+    let convert =
+        |value: &A| if *value == A::STOP { B::STOP } else { B::from_usize(value.to_usize()).unwrap_or(B::STOP) };
+    values.iter().map(convert).collect()
+}
+
+#[derive(Clone, Debug)]
+enum EncodedLabels<'a> {
+    Numbered,
+    Integers(&'a [u64]),
+    Text { offsets: Vec<u64>, text: String },
+}
+
+impl<'a> EncodedLabels<'a> {
+    fn new(labels: &'a Labels) -> Self {
+        match labels {
+            Labels::Numbered(_) => Self::Numbered,
+            Labels::Integers(labels) if labels.iter().copied().eq(0..labels.len() as u64) => Self::Numbered,
+            Labels::Integers(labels) => Self::Integers(labels),
+            Labels::Tokens(labels) => {
+                let mut text = String::with_capacity(labels.iter().map(|label| label.len()).sum());
+                let mut offsets = Vec::with_capacity(labels.len() + 1);
+                for label in labels {
+                    offsets.push(text.len() as u64);
+                    text.push_str(label);
+                }
+                offsets.push(text.len() as u64);
+                Self::Text { offsets, text }
+            }
+        }
+    }
+}
+
+impl<'a> Encoding<'a> {
+    /// Lays out a complex. Cost: nothing but bookkeeping where the width of the file is that of the arrays, else one
+    /// copy of them.
+    ///
+    /// # Errors
+    /// [`EncodeError::TooNarrow`] if a width is asked for that does not hold the complex.
+    pub fn new(built: &'a Built, options: &EncodeOptions<'a>) -> Result<Self, EncodeError> {
+        let mut encoding = match &built.arrays {
+            Arrays::Narrow(arrays) => Self::of_arrays(arrays, options, Indices::from_u32),
+            Arrays::Wide(arrays) => Self::of_arrays(arrays, options, Indices::from_u64),
+        }?;
+        encoding.labels = EncodedLabels::new(&built.labels);
+        encoding.coordinates = built.coordinates.as_ref().map(|coordinates| {
+            let column = match &coordinates.values {
+                Scalars::F32(values) => Column::F32(values),
+                Scalars::F64(values) => Column::F64(values),
+            };
+            (u32::try_from(coordinates.dim).unwrap_or(u32::MAX), column)
+        });
+        let tops = &built.report.top_simplices;
+        let num_tops = tops.iter().sum();
+        // A vertex alone has no orientation.
+        encoding.parity = tops.iter().skip(1).any(|&count| count > 0).then_some((&built.parity, num_tops));
+        Ok(encoding)
+    }
+
+    fn of_arrays<I: Index>(
+        arrays: &'a SigArrays<I>,
+        options: &EncodeOptions<'a>,
+        at_width: fn(&'a [I], IndexWidth) -> Indices<'a>,
+    ) -> Result<Self, EncodeError> {
+        let largest = largest(arrays);
+        let least = IndexWidth::least_for(largest).unwrap_or(IndexWidth::Bits64);
+        let width = options.width.unwrap_or(least);
+        if width < least {
+            return Err(EncodeError::TooNarrow { width, largest, least });
+        }
+        let first = arrays.first.iter().map(|&first| first as u64).collect::<Vec<_>>();
+        let lookup = match width {
+            IndexWidth::Bits16 => Indices::Bits16(convert(&first)),
+            IndexWidth::Bits32 => Indices::Bits32(convert(&first).into()),
+            IndexWidth::Bits64 => Indices::Bits64(first.into()),
+        };
+        let mut indices = vec![
+            (SectionKind::Lookup, lookup),
+            (SectionKind::Boundary, at_width(&arrays.boundary, width)),
+            (SectionKind::Pointers, at_width(&arrays.pointers, width)),
+            (SectionKind::Lists, at_width(&arrays.lists, width)),
+        ];
+        let last_vertices = options.tree.then(|| {
+            indices.push((SectionKind::ChildOffsets, at_width(&arrays.child_offsets, width)));
+            let least = IndexWidth::least_for(arrays.ids(0).len() as u64).unwrap_or(IndexWidth::Bits64);
+            Indices::from_u32(&arrays.last_vertices, least)
+        });
+        Ok(Self {
+            width,
+            dims: arrays.first.len(),
+            num_simplices: arrays.num_simplices,
+            checksums: options.checksums,
+            indices,
+            flags: (&arrays.flags, arrays.pointers.len()),
+            last_vertices,
+            labels: EncodedLabels::Numbered,
+            coordinates: None,
+            parity: None,
+            provenance: options.provenance,
+        })
+    }
+
+    /// The width of the indices.
+    #[must_use]
+    pub const fn width(&self) -> IndexWidth {
+        self.width
+    }
+
+    fn sections(&self) -> Vec<Section<'_>> {
+        let bits = |(bytes, len)| Column::Bits { bytes, len };
+        let mut sections: Vec<_> =
+            self.indices.iter().map(|(kind, indices)| Section::new(*kind, indices.column())).collect();
+        let mut add = |kind, column| sections.push(Section::new(kind, column));
+        add(SectionKind::Flags, bits(self.flags));
+        if let Some(last_vertices) = &self.last_vertices {
+            add(SectionKind::LastVertices, last_vertices.column());
+        }
+        match &self.labels {
+            EncodedLabels::Numbered => {}
+            EncodedLabels::Integers(labels) => add(SectionKind::IntegerLabels, Column::U64(labels)),
+            EncodedLabels::Text { offsets, text } => {
+                add(SectionKind::LabelOffsets, Column::U64(offsets));
+                add(SectionKind::LabelText, Column::U8(text.as_bytes()));
+            }
+        }
+        if let Some(parity) = self.parity {
+            add(SectionKind::Parity, bits(parity));
+        }
+        if let Some(provenance) = self.provenance {
+            add(SectionKind::Provenance, Column::U8(provenance.as_bytes()));
+        }
+        if let Some((components, column)) = self.coordinates {
+            sections.push(Section { components, ..Section::new(SectionKind::Coordinates, column) });
+        }
+        sections.sort_by_key(|section| section.kind);
+        sections
+    }
+
+    fn with_encoder<T>(&self, use_encoder: impl FnOnce(&Encoder<'_>) -> T) -> Result<T, EncodeError> {
+        let sections = self.sections();
+        let encoder = Encoder::new(Kind::Sig, self.width, self.dims, self.num_simplices as u64, &sections)?;
+        let encoder = if self.checksums { encoder.with_checksums()? } else { encoder };
+        Ok(use_encoder(&encoder))
+    }
+
+    /// The length of the file.
+    ///
+    /// # Errors
+    /// [`EncodeError::Format`].
+    #[expect(
+        clippy::redundant_closure_for_method_calls,
+        reason = "the method is for one lifetime of the sections only"
+    )]
+    pub fn file_bytes(&self) -> Result<u64, EncodeError> {
+        self.with_encoder(|encoder| encoder.file_bytes())
+    }
+
+    /// Writes the file, in large pieces: the writer need not be buffered for the arrays' sake.
+    ///
+    /// # Errors
+    /// Those of the writer; [`EncodeError`] as an [`io::Error`] of kind `InvalidInput`.
+    pub fn write_to(&self, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
+        self.with_encoder(|encoder| encoder.write_with(crc32, |piece| out.write_all(piece)))
+            .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?
+    }
+
+    /// The file in memory, in the byte order of a file.
+    ///
+    /// # Errors
+    /// [`EncodeError::Format`].
+    pub fn to_bytes(&self) -> Result<AlignedBytes, EncodeError> {
+        let too_large = EncodeError::Format(format::EncodeError::TooLarge);
+        self.with_encoder(|encoder| {
+            let mut bytes = AlignedBytes::zeroed(usize::try_from(encoder.file_bytes()).map_err(|_| too_large)?);
+            let mut written = 0;
+            encoder.write_with(crc32, |piece| {
+                bytes[written..written + piece.len()].copy_from_slice(piece);
+                written += piece.len();
+                Ok::<(), EncodeError>(())
+            })?;
+            Ok(bytes)
+        })?
+    }
+}
+
+/// The largest id or list offset.
+fn largest<I: Index>(arrays: &SigArrays<I>) -> u64 {
+    let last_id = arrays.num_simplices.saturating_sub(1);
+    // Pointers of dimension d − 1 are never flagged and lists are in id order: the last pointer is the largest offset.
+    let last_list = arrays.pointers.last().map_or(0, |offset| offset.to_usize());
+    last_id.max(last_list) as u64
+}
+
+/// The CRC-32 of a file's checksums, at the speed of the hardware.
+pub(super) fn crc32(before: u32, bytes: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new_with_initial(before);
+    hasher.update(bytes);
+    hasher.finalize()
+}

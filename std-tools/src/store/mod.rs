@@ -1,0 +1,19 @@
+//! Files: encoding what the builder made, writing it so that a file is there whole or not at all, and opening it.
+//!
+//! [`Encoding`] turns [`Built`](crate::build::Built) into the bytes of a file, [`atomic`] brings bytes to disk,
+//! [`Mapped`] and [`Loaded`] open a file for the views of [`sig_core`], [`OwnedScratch`] is the memory that queries
+//! need, and [`verify`] checks what a view cannot check.
+
+pub mod atomic;
+mod bytes;
+mod encode;
+mod mapped;
+mod scratch;
+#[cfg(test)]
+mod tests;
+pub mod verify;
+
+pub use bytes::AlignedBytes;
+pub use encode::{EncodeError, EncodeOptions, Encoding};
+pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
+pub use scratch::OwnedScratch;
