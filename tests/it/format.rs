@@ -130,11 +130,11 @@ fn every_flipped_bit_is_found_where_it_is() {
             match (format::verify(&damaged).unwrap_err(), section) {
                 (FormatError::Checksum { section, dim, offset, length }, Some((kind, of_dim, range))) => {
                     assert_eq!((section, dim), (*kind, *of_dim));
-                    let inside = offset as usize..(offset + length) as usize;
+                    let inside = offset..offset + length;
                     let total = *kind == SectionKind::Checksums && at + 4 >= range.end;
-                    assert!(inside.contains(&at) || total, "byte {at} is not in {inside:?}");
+                    assert!(inside.contains(&(at as u64)) || total, "byte {at} is not in {inside:?}");
                 }
-                (FormatError::Padding { offset }, None) => assert_eq!(offset as usize, at),
+                (FormatError::Padding { offset }, None) => assert_eq!(offset, at as u64),
                 (error, section) => assert!(at < table_end && section.is_none(), "byte {at}: {error}"),
             }
         }
