@@ -123,6 +123,9 @@ impl Options {
     }
 
     /// Every optional section, filled with something that is easy to tell apart.
+    ///
+    /// # Panics
+    /// If the complex has more than 2^32 simplices.
     #[must_use]
     pub fn everything(oracle: &Oracle, width: IndexWidth) -> Self {
         let number = |simplex: usize| f64::from(u32::try_from(simplex).unwrap());

@@ -77,7 +77,7 @@ pub fn roundtrip(bytes: &[u8]) {
     for simplex in &simplices {
         soup.push(&simplex.iter().map(|&vertex| u32::try_from(vertex).expect("a digit")).collect::<Vec<_>>());
     }
-    build_in_both_ways(soup);
+    build_in_both_ways(&soup);
 }
 
 /// Up to 12 simplices on up to 10 vertices, of dimension up to 4.
@@ -107,7 +107,7 @@ pub fn read(format: Option<Format>, bytes: &[u8]) {
         match read_bytes(bytes, "input", &options) {
             Ok((soup, _)) => {
                 assert_sound(&soup, bytes.len());
-                build_in_both_ways(soup);
+                build_in_both_ways(&soup);
             }
             Err(error) => assert!(!error.to_string().is_empty()),
         }
@@ -140,7 +140,7 @@ fn assert_sound(soup: &Soup, bytes: usize) {
 }
 
 /// Builds a soup, and by Algorithms 1 to 3 from an incidence graph: both the same, or both refused.
-fn build_in_both_ways(soup: Soup) {
+fn build_in_both_ways(soup: &Soup) {
     let options = BuildOptions { max_simplices: Some(BUILT), ..BuildOptions::default() };
     let built = build(soup.clone(), &options);
     if built.as_ref().is_ok_and(|built| match &built.arrays {
@@ -149,7 +149,7 @@ fn build_in_both_ways(soup: Soup) {
     }) {
         return;
     }
-    match (built, IncidenceGraph::new(&soup, &options)) {
+    match (built, IncidenceGraph::new(soup, &options)) {
         (Ok(built), Ok(graph)) => assert_eq!(built.arrays, graph.build_sig()),
         (Err(_), _) => {}
         (Ok(_), Err(error)) => panic!("built, but not as an incidence graph: {error}"),

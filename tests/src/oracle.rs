@@ -27,6 +27,9 @@ impl Oracle {
     /// The complex of all faces of the given simplices, whose vertices may stand in any order.
     ///
     /// The vertices that occur are numbered by increasing label.
+    ///
+    /// # Panics
+    /// Never.
     #[must_use]
     pub fn new<W: AsRef<[usize]>>(simplices: &[W]) -> Self {
         let labels: BTreeSet<usize> = simplices.iter().flat_map(|word| word.as_ref().iter().copied()).collect();
@@ -140,7 +143,10 @@ impl Oracle {
         self.which(|word| word.len() == dim + 1 && is_subset(word, own))
     }
 
-    /// F\[σ\]\[i\]: the facet that omits the i-th vertex.
+    /// F\[σ\]\[i\]: the facet that omits the i-th vertex of a simplex that is not a vertex.
+    ///
+    /// # Panics
+    /// If there is no such vertex, or no other.
     #[must_use]
     pub fn facet(&self, simplex: usize, position: usize) -> usize {
         let mut word = self.word(simplex).to_vec();

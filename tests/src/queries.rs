@@ -50,7 +50,6 @@ pub fn ask_everything<I: Index>(complex: &Complex<'_, I>, simplices: usize) -> u
         ended(usize::from(complex.labels().get(VertexId::new(id.index())).is_some()), 1);
     }
     ask_the_whole(complex);
-    drop(scratch);
     assert!(memory.marks.iter().all(|&word| word == 0), "a query left marks behind");
     items
 }
