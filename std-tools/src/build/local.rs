@@ -209,7 +209,10 @@ impl Local {
         here.first_child.clear();
         here.first_child.push(0);
         below.letters.clear();
-        if self.neighbours.len() <= MASK_BITS {
+        if here.has_all {
+            below.letters.extend((0..).take(self.neighbours.len()));
+            here.first_child.push(narrow(below.letters.len()));
+        } else if self.neighbours.len() <= MASK_BITS {
             here.masks.resize(here.letters.len(), 0);
             for visit in &self.visits {
                 here.masks[visit.node as usize] |= self.masks[visit.next as usize];
