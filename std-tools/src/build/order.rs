@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use rayon::prelude::*;
+
 use crate::build::{BuildError, VertexOrder};
 use crate::soup::{Coordinates, Labels, Scalars};
 
@@ -154,7 +156,7 @@ fn sort_along_curve(inputs: &mut Vec<u32>, Coordinates { dim, values }: &Coordin
     }
     let scale = f64::from((1_u32 << CURVE_BITS) - 1);
     let mut keyed: Vec<(u64, u32)> = inputs
-        .iter()
+        .par_iter()
         .map(|&input| {
             let mut cell = [0_u32; 3];
             for axis in 0..axes {
@@ -166,7 +168,7 @@ fn sort_along_curve(inputs: &mut Vec<u32>, Coordinates { dim, values }: &Coordin
             (hilbert_index(&mut cell[..axes]), input)
         })
         .collect();
-    keyed.sort_by_key(|&(key, _)| key);
+    keyed.par_sort_by_key(|&(key, _)| key);
     inputs.clear();
     inputs.extend(keyed.into_iter().map(|(_, input)| input));
 }
