@@ -106,10 +106,11 @@ pub(crate) fn number_vertices(
         }
     }
     // Labels are different, and what follows breaks ties by position, which now is the rank of the label.
-    match order {
-        VertexOrder::Input => {}
-        VertexOrder::Hilbert => sort_along_curve(&mut inputs, coordinates.ok_or(BuildError::NoCoordinates)?),
-        VertexOrder::Rcm => {
+    match (order, coordinates) {
+        (VertexOrder::Input, _) | (VertexOrder::Auto, None) => {}
+        (VertexOrder::Hilbert, None) => return Err(BuildError::NoCoordinates),
+        (VertexOrder::Auto | VertexOrder::Hilbert, Some(coordinates)) => sort_along_curve(&mut inputs, coordinates),
+        (VertexOrder::Rcm, _) => {
             let ids = invert(&inputs, used.len());
             let ranks = reverse_cuthill_mckee(inputs.len(), simplices, &ids);
             inputs = permute_rows(&inputs, 1, &ranks);
