@@ -135,7 +135,11 @@ fn building(side: u32) -> Result<Built, Box<dyn Error>> {
     if !peers.is_empty() {
         let peers = Timing::of(peers);
         println!("    GUDHI         {} a simplex", peers.show(1e9, "ns"));
-        println!("    GUDHI / SIG   {:.2} all threads, {:.2} one", peers.median / all.median, peers.median / single.median);
+        println!(
+            "    GUDHI / SIG   {:.2} all threads, {:.2} one",
+            peers.median / all.median,
+            peers.median / single.median
+        );
     }
     Ok(built)
 }
@@ -153,7 +157,8 @@ fn run_peer(program: &Path, side: u32) -> Result<f64, Box<dyn Error>> {
     let side = side.to_string();
     let output = Command::new(program).args(["lean", &side, &side, &side]).output()?;
     let text = String::from_utf8(output.stdout)?;
-    let nanoseconds = text.split("s, ").nth(1).and_then(|rest| rest.split(" ns").next()).ok_or("no figure of the peer")?;
+    let nanoseconds =
+        text.split("s, ").nth(1).and_then(|rest| rest.split(" ns").next()).ok_or("no figure of the peer")?;
     Ok(nanoseconds.parse::<f64>()? * 1e-9)
 }
 
@@ -206,8 +211,11 @@ fn stars<I: sig_core::Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn Err
     let (queries, passes) = (Timing::of(queries), Timing::of(passes));
     println!("  C_0,{top} of all vertices: {reported} simplices reported");
     println!("    {} each", queries.show(1e9 / reported as f64, "ns"));
-    println!("    {:.1} times a sequential pass over the arrays it reads ({})", queries.median / passes.median,
-        passes.show(1e3, "ms"));
+    println!(
+        "    {:.1} times a sequential pass over the arrays it reads ({})",
+        queries.median / passes.median,
+        passes.show(1e3, "ms")
+    );
     Ok(())
 }
 
@@ -217,9 +225,9 @@ fn sequential_pass<I: sig_core::Index>(complex: &Complex<'_, I>, top: usize) -> 
         let column = complex.container().section(kind).map(|section| section.column);
         let bytes = column.as_ref().map_or(&[][..], Column::as_bytes);
         let start = bytes.len().saturating_sub(last.saturating_mul(I::WIDTH.bytes()));
-        bytes[start..].chunks_exact(8).fold(0u64, |sum, word| {
-            sum.wrapping_add(u64::from_ne_bytes(word.try_into().unwrap_or_default()))
-        })
+        bytes[start..]
+            .chunks_exact(8)
+            .fold(0u64, |sum, word| sum.wrapping_add(u64::from_ne_bytes(word.try_into().unwrap_or_default())))
     };
     words(SectionKind::Boundary, rows)
         .wrapping_add(words(SectionKind::Pointers, usize::MAX))
@@ -240,6 +248,10 @@ fn peak(side: u32) -> Result<(), Box<dyn Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).ok_or("no VmHWM")?;
     let peak: f64 = peak.trim().trim_end_matches(" kB").parse::<f64>()? * 1024.0;
-    println!("  peak memory of a build, input included: {:.0} MB, {:.2} times the file", peak / 1e6, peak / bytes as f64);
+    println!(
+        "  peak memory of a build, input included: {:.0} MB, {:.2} times the file",
+        peak / 1e6,
+        peak / bytes as f64
+    );
     Ok(())
 }

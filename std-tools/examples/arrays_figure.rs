@@ -16,7 +16,7 @@ const SHADES: [&str; 3] = ["#fff3d6", "#d9ecff", "#e2f4dc"];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args_os().nth(1).ok_or("usage: arrays_figure FILE.sigc")?;
-    let file = sig_tools::Mapped::open(path.as_ref())?;
+    let file = sig_tools::Mapped::open(&path)?;
     let complex = Complex::<u16>::from_bytes(file.bytes())?;
     let mut svg = String::new();
     draw_complex(&complex, &mut svg)?;

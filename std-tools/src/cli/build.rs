@@ -1,11 +1,12 @@
 //! `sig build`: meshes and lists of simplices become a complex in a file.
 
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::Context;
 use clap::ValueEnum;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 use sig_core::{Index, IndexWidth};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
@@ -36,7 +37,7 @@ pub(super) struct Args {
     target: output::Target,
 
     /// The format of the inputs; by default it is found by content, then by name
-    #[arg(short, long, value_parser = format_parser())]
+    #[arg(short, long, value_parser = super::named(Format::ALL, Format::name, Format::description))]
     format: Option<Format>,
 
     /// How vertices are numbered, which decides what lies together in the file
@@ -91,12 +92,6 @@ enum Order {
     Rcm,
 }
 
-fn format_parser() -> impl TypedValueParser<Value = Format> {
-    let value = |format: &Format| PossibleValue::new(format.name()).help(format.description());
-    PossibleValuesParser::new(Format::ALL.iter().map(value))
-        .try_map(|name| Format::from_name(&name).ok_or(UsageError(format!("unknown format {name}"))))
-}
-
 fn width_parser() -> impl TypedValueParser<Value = IndexWidth> {
     PossibleValuesParser::new(["16", "32", "64"]).map(|bits| match bits.as_str() {
         "16" => IndexWidth::Bits16,
@@ -111,6 +106,9 @@ impl Args {
         let (path, existing) = (&self.target.output, self.target.existing());
         if self.json && output::is_stdout(path) {
             return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
+        }
+        if output::is_stdout(path) && std::io::stdout().is_terminal() {
+            return Err(UsageError("-o - writes a binary file, and standard output is a terminal".to_owned()).into());
         }
         output::check(path, existing)?;
         if let Some(threads) = self.threads {
@@ -254,14 +252,21 @@ impl Input {
         let listed: usize = self.simplices.iter().sum();
         let gzip = if self.gzip { ", gzip" } else { "" };
         let (vertices, listed) = (grouped(self.vertices), grouped(listed));
-        eprintln!("read   {}: {}{gzip}, {vertices} vertices, {listed} simplices", self.file, self.format);
+        output::log(format_args!(
+            "read   {}: {}{gzip}, {vertices} vertices, {listed} simplices",
+            self.file, self.format
+        ));
         let split = format!("polygons and polyhedra, split into {} simplices", grouped(self.split_into));
         note(self.polygons + self.polyhedra, &split);
         note(self.degenerate_dropped, "simplices dropped that repeat a vertex");
         note(self.welded_corners, "corners welded to one at the same place");
         note(self.inner_nodes_dropped, "nodes dropped that lie inside elements of higher order");
         if self.ignored > 0 {
-            eprintln!("       ignored {} times: {}", grouped(self.ignored), self.ignored_names.join(", "));
+            output::log(format_args!(
+                "       ignored {} times: {}",
+                grouped(self.ignored),
+                self.ignored_names.join(", ")
+            ));
         }
     }
 }
@@ -298,19 +303,19 @@ impl Report {
         for Renumbered { file, from, to } in
             self.renumbered.iter().filter(|renumbered| renumbered.from != renumbered.to)
         {
-            eprintln!("       vertex {from} of {file} is now {to}, and so on");
+            output::log(format_args!("       vertex {from} of {file} is now {to}, and so on"));
         }
         let total: usize = self.simplices.iter().sum();
         let counts: Vec<_> = self.simplices.iter().map(grouped).collect();
-        eprint!("built  dimension {}, {} simplices", self.dimension, grouped(total));
-        eprintln!("{}{}", if counts.is_empty() { "" } else { ": " }, counts.join(" + "));
+        let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
+        output::log(format_args!("built  dimension {}, {} simplices{counts}", self.dimension, grouped(total)));
         note(self.repeated, "simplices merged that repeat another");
         note(self.non_maximal, "simplices merged that are faces of others");
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");
         note(self.unused_vertices_kept, "unused vertices kept (--drop-unused drops them)");
         note(self.unused_vertices_dropped, "unused vertices dropped");
         let (bytes, width) = (grouped(self.file_bytes), self.index_bits);
-        eprintln!("wrote  {}: {bytes} bytes, {width}-bit indices, {:.2} s", self.output, self.seconds);
+        output::log(format_args!("wrote  {}: {bytes} bytes, {width}-bit indices, {:.2} s", self.output, self.seconds));
     }
 }
 
@@ -322,6 +327,6 @@ fn counts<I: Index>(arrays: &SigArrays<I>) -> Vec<usize> {
 /// A line on something that happened so often, if it did.
 fn note(count: usize, what: &str) {
     if count > 0 {
-        eprintln!("       {} {what}", grouped(count));
+        output::log(format_args!("       {} {what}", grouped(count)));
     }
 }

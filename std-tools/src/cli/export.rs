@@ -4,7 +4,6 @@ use std::io;
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use sig_core::with_complex;
 use sig_tools::export::{self, ExportError, Format};
 use sig_tools::store::Access;
@@ -29,14 +28,8 @@ pub(super) struct Args {
     target: output::Target,
 
     /// The format; by default the one that the name of OUT stands for
-    #[arg(short, long, value_parser = format_parser())]
+    #[arg(short, long, value_parser = super::named(Format::ALL, Format::name, Format::description))]
     format: Option<Format>,
-}
-
-fn format_parser() -> impl TypedValueParser<Value = Format> {
-    let value = |format: &Format| PossibleValue::new(format.name()).help(format.description());
-    PossibleValuesParser::new(Format::ALL.iter().map(value))
-        .try_map(|name| Format::from_name(&name).ok_or(UsageError(format!("unknown format {name}"))))
 }
 
 impl Args {
@@ -60,7 +53,7 @@ impl Args {
             Ok(())
         })?;
         for note in notes {
-            eprintln!("sig: note: {format}: {note}");
+            output::log(format_args!("sig: note: {format}: {note}"));
         }
         Ok(())
     }

@@ -17,6 +17,7 @@ mod verify;
 use std::io;
 use std::process::ExitCode;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{CommandFactory, Parser, Subcommand};
 use sig_tools::store::atomic;
 
@@ -68,6 +69,19 @@ fn command() -> clap::Command {
     Cli::command()
 }
 
+/// A parser of the names of some things, with a description of each in the help.
+fn named<T: Copy + Send + Sync>(
+    all: &'static [T],
+    name: fn(T) -> &'static str,
+    description: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let value = |&item: &T| PossibleValue::new(name(item)).help(description(item));
+    PossibleValuesParser::new(all.iter().map(value)).try_map(move |text| {
+        let found = all.iter().copied().find(|&item| name(item) == text);
+        found.ok_or_else(|| UsageError(format!("unknown name '{text}'")))
+    })
+}
+
 /// What is wrong with a command line, where only the data can tell.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
@@ -82,7 +96,7 @@ pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     // Without a handler an interrupt ends the process all the same, and leaves the temporary of a file behind.
     if let Err(error) = ctrlc::set_handler(|| atomic::abort(130)) {
-        eprintln!("sig: warning: cannot handle interrupts: {error}");
+        output::log(format_args!("sig: warning: cannot handle interrupts: {error}"));
     }
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
@@ -111,6 +125,6 @@ fn explain(error: &anyhow::Error) -> ExitCode {
             message.push_str(&cause);
         }
     }
-    eprintln!("sig: {message}");
+    output::log(format_args!("sig: {message}"));
     ExitCode::from(if error.is::<UsageError>() { 2 } else { 1 })
 }

@@ -7,6 +7,11 @@ use std::path::Path;
 use serde::Serialize;
 use sig_tools::store::atomic::{self, Existing};
 
+/// Says something about the work on standard error; if nobody listens there, the work goes on.
+pub(super) fn log(message: impl Display) {
+    let _ = writeln!(io::stderr(), "{message}");
+}
+
 /// Whether a path stands for standard output.
 pub(super) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"

@@ -124,7 +124,7 @@ fn print(file: &str, check: &Check) -> io::Result<()> {
         }
     })?;
     if check.status == "failed" {
-        eprintln!("sig: {file}: {}", check.message);
+        output::log(format_args!("sig: {file}: {}", check.message));
     }
     Ok(())
 }

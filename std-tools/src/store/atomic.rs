@@ -61,7 +61,7 @@ pub enum WriteError {
 
 /// Checks, before the long work starts, that a file called `path` may be written.
 ///
-/// [`write`] checks again, without a gap between the check and the rename.
+/// [`write()`] checks again, without a gap between the check and the rename.
 ///
 /// # Errors
 /// [`WriteError::Exists`] and [`WriteError::NotAFile`]; [`WriteError::Create`] if there is no such directory.
