@@ -196,11 +196,11 @@ impl IncidenceGraph {
     where
         Arrays: From<SigArrays<I>>,
     {
-        build::pack(self.faces::<I>(), |write| {
+        build::pack(self.faces::<I>(), |ids, part| {
             let mut visited = vec![false; self.num_simplices];
-            for simplex in (0..self.first.last().copied().unwrap_or(0)).map(SimplexId::new) {
+            for simplex in ids.map(SimplexId::new) {
                 let list = self.partial_coboundary(simplex, &mut visited);
-                write(&list.into_iter().map(|top| build::index(top.index())).collect::<Vec<I>>());
+                part.push(&list.into_iter().map(|top| build::index(top.index())).collect::<Vec<I>>());
             }
         })
     }

@@ -3,7 +3,7 @@
 //!
 //! The damage is drawn from SplitMix64 with the seeds below, so that a failure can be had again from its number.
 
-use sig_core::format::{Container, SectionKind};
+use sig_core::format::{Container, ENTRY_BYTES, HEADER_BYTES, SectionKind};
 use sig_core::{AnyComplex, IndexWidth, with_complex};
 use sig_tests::aligned::AlignedBytes;
 use sig_tests::encode::{Options, encode};
@@ -137,11 +137,11 @@ fn damaged_headers_and_tables() {
         for _ in 0..=random.below(2) {
             let entries = Container::from_bytes(&bytes).map_or(5, |container| container.header().sections) as usize;
             let (at, size) = match random.below(3) {
-                0 => [(14, 2), (18, 1), (20, 4), (24, 8), (32, 8), (32, 1), (18, 1)][random.below(7)],
+                0 => [(14, 2), (18, 1), (20, 4), (24, 8), (32, 8), (32, 1), (44, 4)][random.below(7)],
                 _ => {
-                    let entry = 64 + 48 * random.below(entries);
+                    let entry = HEADER_BYTES + ENTRY_BYTES * random.below(entries);
                     let (field, size) =
-                        [(0, 2), (2, 1), (3, 1), (4, 4), (8, 8), (16, 8), (16, 1), (24, 1)][random.below(8)];
+                        [(0, 2), (2, 1), (3, 1), (4, 2), (6, 2), (8, 8), (16, 8), (16, 1)][random.below(8)];
                     (entry + field, size)
                 }
             };

@@ -1,6 +1,6 @@
 //! Every query on a view that may be anything: nothing is known but that it was opened.
 
-use sig_core::format::crc32;
+use sig_core::format::{ENTRY_BYTES, HEADER_BYTES, crc32};
 use sig_core::{Complex, Index, SimplexId, VertexId};
 
 use crate::conformance::Memory;
@@ -66,12 +66,12 @@ fn ask_the_whole<I: Index>(complex: &Complex<'_, I>) {
 /// Computes the header's checksum anew, so that what was changed in the header or the table gets past it.
 pub fn reseal(bytes: &mut [u8]) {
     const CHECKSUM: std::ops::Range<usize> = 40..44;
-    let Some(count) = bytes.get(20..24) else { return };
-    let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize;
-    let end = count.saturating_mul(48).saturating_add(64).min(bytes.len());
-    if end < 64 {
+    if bytes.len() < HEADER_BYTES {
         return;
     }
+    let field = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]) as usize;
+    let (sections, names) = (field(20), field(44));
+    let end = sections.saturating_mul(ENTRY_BYTES).saturating_add(HEADER_BYTES + names).min(bytes.len());
     bytes[CHECKSUM].fill(0);
     let checksum = crc32(0, &bytes[..end]);
     bytes[CHECKSUM].copy_from_slice(&checksum.to_le_bytes());

@@ -3,10 +3,11 @@
 use core::fmt;
 
 use super::checksum::{CHECKSUM_BLOCK_BYTES, crc32, num_blocks};
-use super::container::{Entry, Header, Kind, RawHeader, WHOLE_COMPLEX, align_up, table_bytes};
+use super::header::{Header, Kind, RawHeader};
 use super::section::{byte_len, element_bytes};
+use super::table::{Entry, WHOLE_COMPLEX, align_up};
 use super::wire::ByteOrder;
-use super::{Column, NAME_BYTES, SECTION_ALIGN, Section, SectionKind, VERSION};
+use super::{Column, SECTION_ALIGN, Section, SectionKind, VERSION};
 use crate::id::{IndexWidth, MAX_DIM};
 
 /// Why sections cannot be encoded.
@@ -29,12 +30,12 @@ pub enum EncodeError {
         /// The first section out of order.
         section: SectionKind,
     },
-    /// An attribute has no name, another section has one, or a name is longer than [`NAME_BYTES`] or holds a zero.
+    /// An attribute has no name, another section has one, or a name is longer than 65,535 bytes or holds a zero.
     Name {
         /// The section.
         section: SectionKind,
     },
-    /// The number of components is zero or does not divide the number of elements, the dimension is not one of the
+    /// The number of components is zero, more than 65,535, or does not divide the number of elements, the dimension is not one of the
     /// complex, or the bytes of a column of bits are not as many as the bits take.
     Shape {
         /// The section.
@@ -81,7 +82,8 @@ impl<'a> Encoder<'a> {
         num_simplices: u64,
         sections: &'a [Section<'a>],
     ) -> Result<Self, EncodeError> {
-        let header = Header { version: VERSION, kind, width, dims, num_simplices, sections: 0, file_bytes: 0 };
+        let header =
+            Header { version: VERSION, kind, width, dims, num_simplices, sections: 0, name_bytes: 0, file_bytes: 0 };
         Self { header, sections, checksums: false }.laid_out()
     }
 
@@ -107,22 +109,21 @@ impl<'a> Encoder<'a> {
                 return Err(EncodeError::Order { section: kind });
             }
             let named = kind == SectionKind::Attribute;
-            if section.name.is_empty() == named || section.name.len() > NAME_BYTES || section.name.contains('\0') {
+            if section.name.is_empty() == named || name_len(section).is_none() || section.name.contains('\0') {
                 return Err(EncodeError::Name { section: kind });
             }
             let components = section.components as usize;
+            let rows = components > 0 && components_code(section).is_some() && section.column.len() % components == 0;
             let ragged = matches!(section.column, Column::Bits { bytes, len } if bytes.len() != len.div_ceil(8));
-            if ragged
-                || components == 0
-                || section.column.len() % components != 0
-                || section.dim.is_some_and(|dim| dim >= self.header.dims)
-            {
+            if ragged || !rows || section.dim.is_some_and(|dim| dim >= self.header.dims) {
                 return Err(EncodeError::Shape { section: kind });
             }
         }
         self.header.sections =
             u32::try_from(self.sections.len() + usize::from(self.checksums)).map_err(|_| EncodeError::TooLarge)?;
-        let mut end = table_bytes(self.header.sections) as u64;
+        let names: u64 = self.sections.iter().map(|section| section.name.len() as u64).sum();
+        self.header.name_bytes = u32::try_from(names).map_err(|_| EncodeError::TooLarge)?;
+        let mut end = self.header.table_bytes() as u64;
         for entry in self.entries() {
             let length = byte_len(entry.element, entry.count).ok_or(EncodeError::TooLarge)?;
             end = align_up(end).and_then(|start| start.checked_add(length)).ok_or(EncodeError::TooLarge)?;
@@ -148,9 +149,9 @@ impl<'a> Encoder<'a> {
             components: 1,
             offset: 0,
             count: blocks + 1,
-            name: [0; NAME_BYTES],
+            name_len: 0,
         });
-        let mut end = table_bytes(self.header.sections) as u64;
+        let mut end = self.header.table_bytes() as u64;
         self.sections.iter().map(unplaced_entry).chain(checksums).map(move |entry| {
             let offset = align_up(end).unwrap_or(u64::MAX);
             end = offset.saturating_add(byte_len(entry.element, entry.count).unwrap_or(u64::MAX));
@@ -188,9 +189,15 @@ impl<'a> Encoder<'a> {
         crc: impl Fn(u32, &[u8]) -> u32,
         mut sink: impl FnMut(&[u8]) -> Result<(), E>,
     ) -> Result<(), E> {
-        sink(&RawHeader::to_file_bytes(&self.header, self.entries()))?;
+        let names = || self.sections.iter().map(|section| section.name.as_bytes());
+        let mut header = RawHeader::to_file_bytes(&self.header);
+        let checksum =
+            self.entries().fold(RawHeader::checksum(&header), |before, entry| crc32(before, &entry.to_file_bytes()));
+        RawHeader::seal(&mut header, names().fold(checksum, crc32), ByteOrder::Little);
+        sink(&header)?;
         self.entries().try_for_each(|entry| sink(&entry.to_file_bytes()))?;
-        pad(table_bytes(self.header.sections), &mut sink)?;
+        names().filter(|name| !name.is_empty()).try_for_each(&mut sink)?;
+        pad(self.header.table_bytes(), &mut sink)?;
         for section in self.sections {
             little_endian(&section.column, section.column.as_bytes(), &mut sink)?;
             pad(section.column.as_bytes().len(), &mut sink)?;
@@ -222,19 +229,24 @@ impl<'a> Encoder<'a> {
     }
 }
 
+fn name_len(section: &Section<'_>) -> Option<u16> {
+    u16::try_from(section.name.len()).ok()
+}
+
+fn components_code(section: &Section<'_>) -> Option<u16> {
+    u16::try_from(section.components).ok()
+}
+
+/// The entry of a section that was checked, still without its place.
 fn unplaced_entry(section: &Section<'_>) -> Entry {
-    let mut name = [0; NAME_BYTES];
-    for (to, from) in name.iter_mut().zip(section.name.bytes()) {
-        *to = from;
-    }
     Entry {
         code: section.kind.code(),
         element: section.column.element_code(),
         dim: section.dim.and_then(|dim| u8::try_from(dim).ok()).unwrap_or(WHOLE_COMPLEX),
-        components: section.components,
+        components: components_code(section).unwrap_or(0),
+        name_len: name_len(section).unwrap_or(0),
         offset: 0,
         count: section.column.len() as u64,
-        name,
     }
 }
 

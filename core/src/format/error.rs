@@ -117,7 +117,7 @@ pub enum TableError {
     Dimension(u8),
     /// The number of components is zero or not the one that the kind asks for.
     Components(u32),
-    /// The name is not UTF-8 padded with zeros.
+    /// The name is not UTF-8, holds a zero, is not where it must be, or is too long for the table.
     Name,
     /// The count is not the one that follows from the numbers of simplices.
     Count {
@@ -228,7 +228,7 @@ impl fmt::Display for TableError {
             Self::ElementType(code) => write!(f, "element type {code} does not fit the section"),
             Self::Dimension(dim) => write!(f, "dimension {dim} does not fit the section"),
             Self::Components(components) => write!(f, "{components} components do not fit the section"),
-            Self::Name => f.write_str("the name is not UTF-8 padded with zeros, or not allowed here"),
+            Self::Name => f.write_str("the name is not UTF-8, holds a zero, or is missing or not allowed here"),
             Self::Count { found, expected } => write!(f, "{found} elements, but {expected} follow from the complex"),
             Self::Offset { found, expected } => write!(f, "starts at byte {found} instead of {expected}"),
             Self::PastEnd => f.write_str("reaches past the end of the file"),

@@ -10,13 +10,16 @@ mod checksum;
 mod container;
 mod encode;
 mod error;
+mod header;
 mod section;
+mod table;
 mod wire;
 
 pub use checksum::{Blocks, CHECKSUM_BLOCK_BYTES, ChecksumBlock, crc32, verify, verify_with};
-pub use container::{Container, Header, Kind};
+pub use container::{Container, Sections};
 pub use encode::{EncodeError, Encoder};
 pub use error::{FormatError, Rule, TableError};
+pub use header::{Header, Kind};
 pub use section::{Column, Section, SectionKind};
 pub use wire::swap_byte_order;
 
@@ -30,8 +33,6 @@ pub const SECTION_ALIGN: usize = 64;
 /// The least alignment of a buffer that a view may lie in: that of its widest elements.
 pub const BUFFER_ALIGN: usize = 8;
 /// Bytes of the header.
-pub const HEADER_BYTES: usize = 64;
+pub const HEADER_BYTES: usize = 48;
 /// Bytes of an entry of the section table.
-pub const ENTRY_BYTES: usize = 48;
-/// The longest name of a section, in bytes of UTF-8.
-pub const NAME_BYTES: usize = 24;
+pub const ENTRY_BYTES: usize = 24;

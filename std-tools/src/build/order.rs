@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use rayon::prelude::*;
+
 use crate::build::{BuildError, VertexOrder};
 use crate::soup::{Coordinates, Labels, Scalars};
 
@@ -104,10 +106,11 @@ pub(crate) fn number_vertices(
         }
     }
     // Labels are different, and what follows breaks ties by position, which now is the rank of the label.
-    match order {
-        VertexOrder::Input => {}
-        VertexOrder::Hilbert => sort_along_curve(&mut inputs, coordinates.ok_or(BuildError::NoCoordinates)?),
-        VertexOrder::Rcm => {
+    match (order, coordinates) {
+        (VertexOrder::Input, _) | (VertexOrder::Auto, None) => {}
+        (VertexOrder::Hilbert, None) => return Err(BuildError::NoCoordinates),
+        (VertexOrder::Auto | VertexOrder::Hilbert, Some(coordinates)) => sort_along_curve(&mut inputs, coordinates),
+        (VertexOrder::Rcm, _) => {
             let ids = invert(&inputs, used.len());
             let ranks = reverse_cuthill_mckee(inputs.len(), simplices, &ids);
             inputs = permute_rows(&inputs, 1, &ranks);
@@ -154,7 +157,7 @@ fn sort_along_curve(inputs: &mut Vec<u32>, Coordinates { dim, values }: &Coordin
     }
     let scale = f64::from((1_u32 << CURVE_BITS) - 1);
     let mut keyed: Vec<(u64, u32)> = inputs
-        .iter()
+        .par_iter()
         .map(|&input| {
             let mut cell = [0_u32; 3];
             for axis in 0..axes {
@@ -166,7 +169,7 @@ fn sort_along_curve(inputs: &mut Vec<u32>, Coordinates { dim, values }: &Coordin
             (hilbert_index(&mut cell[..axes]), input)
         })
         .collect();
-    keyed.sort_by_key(|&(key, _)| key);
+    keyed.par_sort_by_key(|&(key, _)| key);
     inputs.clear();
     inputs.extend(keyed.into_iter().map(|(_, input)| input));
 }

@@ -26,7 +26,7 @@ use super::{UsageError, progress};
 Examples:
   sig build bunny.off -o bunny.sigc
   sig build part1.txt part2.txt -o all.sigc --force     simplices by label, from two files
-  sig build bracket.msh.gz -o bracket.sigc --order hilbert --json
+  sig build bracket.msh.gz -o bracket.sigc --order input --json
   printf 'a,b,c\\nc,d\\n' | sig build - -o small.sigc --format simplices")]
 pub(super) struct Args {
     /// The inputs; `-` is standard input
@@ -83,8 +83,10 @@ pub(super) struct Args {
 
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum Order {
-    /// By label: numbers by value, other labels bytewise
+    /// `hilbert` where there are coordinates, else `input`
     #[default]
+    Auto,
+    /// By label: numbers by value, other labels bytewise
     Input,
     /// Along a Hilbert curve through the coordinates
     Hilbert,
@@ -169,6 +171,7 @@ impl Args {
         let show = |phase, done, total| bars.show(phase, done, total);
         let options = BuildOptions {
             order: match self.order {
+                Order::Auto => VertexOrder::Auto,
                 Order::Input => VertexOrder::Input,
                 Order::Hilbert => VertexOrder::Hilbert,
                 Order::Rcm => VertexOrder::Rcm,

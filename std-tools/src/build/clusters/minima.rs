@@ -11,10 +11,13 @@
 //! All that concerns top simplices of dimension g ≥ p + 2 about a p-simplex; those of dimension p + 1 are clusters of
 //! their own, the top cofacets.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
 use crate::build::limits::Stage;
+use crate::build::lists::Part;
 use crate::build::{SigArrays, index};
 
 /// The relations, as found. Ids are stored as `I`, links as `L`.
@@ -128,29 +131,41 @@ impl<I: Index, L: Index> Minima<I, L> {
         self.others = others;
     }
 
-    /// Hands over C\*(σ) for every simplex σ below dimension d in id order.
-    pub(super) fn for_each_list(&self, write: &mut dyn FnMut(&[I])) {
-        let mut others = self.others.iter().peekable();
+    /// Writes the lists of a range of simplices below dimension d.
+    pub(super) fn write(&self, ids: Range<usize>, part: &mut Part<I>) {
+        let start = self.others.partition_point(|other| other.face.to_usize() < ids.start);
+        let mut others = self.others[start..].iter().peekable();
         let mut list = Vec::new();
         for (dim, range) in self.first.windows(2).enumerate() {
             let (links, bits) = (&self.links[dim], link_bits(dim + 1));
-            for id in range[0]..range[1] {
+            for id in ids.start.max(range[0])..ids.end.min(range[1]) {
+                let representative = self.representatives.get(id).copied().unwrap_or(I::STOP);
+                let last = links.last.get(id - range[0]).copied().unwrap_or(L::STOP);
+                let has_others = others.peek().is_some_and(|other| other.face.to_usize() == id);
+                if representative != I::STOP && last == L::STOP && !has_others {
+                    part.push(&[representative]);
+                    continue;
+                }
                 list.clear();
-                list.extend(self.representatives.get(id).filter(|&&top| top != I::STOP));
+                if representative != I::STOP {
+                    list.push(representative);
+                }
                 while let Some(other) = others.next_if(|other| other.face.to_usize() == id) {
                     if other.mask != 0 {
                         list.push(other.top);
                     }
                 }
-                if let Some(&last) = links.last.get(id - range[0]).filter(|&&last| last != L::STOP) {
+                if last != L::STOP {
                     let mut link = last;
-                    while {
+                    loop {
                         link = links.next[link.to_usize()];
                         list.push(index(range[1] + (link.to_usize() >> bits)));
-                        link != last
-                    } {}
+                        if link == last {
+                            break;
+                        }
+                    }
                 }
-                write(&list);
+                part.push(&list);
             }
         }
     }
@@ -173,22 +188,30 @@ impl<I: Index> Faces<'_, I> {
     /// than the simplex, and the positions of its vertices.
     fn for_each_above(&mut self, simplex: I, dim: Dim, kept: u32, mut visit: impl FnMut(I, u32)) {
         let all = u32::MAX >> (31 - dim);
-        self.stack.push((simplex, dim, 0));
+        self.push_facets(simplex, dim, all & !kept, 0);
         while let Some((face, face_dim, omitted)) = self.stack.pop() {
             if face_dim + 2 <= dim {
                 visit(face, all & !omitted);
             }
-            if face_dim == 0 {
-                continue;
-            }
             // Positions before all that are left out are the same in the face and in the simplex.
-            let mut free = all & !kept & (omitted & omitted.wrapping_neg()).wrapping_sub(1);
-            let row = (face.to_usize() - self.first[face_dim]) * (face_dim + 1);
-            while free != 0 {
-                let position = free.trailing_zeros();
-                free &= free - 1;
-                self.stack.push((self.rows[face_dim][row + position as usize], face_dim - 1, omitted | 1 << position));
+            let free = all & !kept & ((omitted & omitted.wrapping_neg()) - 1);
+            if face_dim > 0 && free != 0 {
+                self.push_facets(face, face_dim, free, omitted);
             }
+        }
+    }
+
+    /// Pushes the facets of `face` that leave out one of the positions `free` more.
+    fn push_facets(&mut self, face: I, dim: Dim, mut free: u32, omitted: u32) {
+        if omitted == 0 {
+            // A facet of the simplex is no use in itself, and nothing is free below the first.
+            free &= free.wrapping_sub(1);
+        }
+        let row = &self.rows[dim][(face.to_usize() - self.first[dim]) * (dim + 1)..];
+        while free != 0 {
+            let position = free.trailing_zeros();
+            free &= free - 1;
+            self.stack.push((row[position as usize], dim - 1, omitted | 1 << position));
         }
     }
 }

@@ -29,14 +29,15 @@ where
     if pairs.fold(0, usize::saturating_add) / MANY_FACES <= arrays.num_simplices {
         if u32::from_usize(minima::num_links(&arrays)).is_some() {
             let minima = minima::find::<I, u32>(&arrays, is_top, &stage);
-            pack(arrays, |write| minima.for_each_list(write))
+            pack(arrays, |ids, part| minima.write(ids, part))
         } else {
             let minima = minima::find::<I, u64>(&arrays, is_top, &stage);
-            pack(arrays, |write| minima.for_each_list(write))
+            pack(arrays, |ids, part| minima.write(ids, part))
         }
     } else {
         let relations = union::find(&arrays, &stage);
-        pack(arrays, |write| relations.iter().flat_map(union::Relations::iter).for_each(&mut *write))
+        let first = arrays.first.clone();
+        pack(arrays, |ids, part| union::write(&relations, &first, ids, part))
     }
 }
 
@@ -48,21 +49,22 @@ mod tests {
     use crate::build::{BuildOptions, build};
     use crate::soup::{Labels, Soup};
 
-    /// The lists by local minima.
-    fn by_minima<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> Vec<Vec<usize>> {
-        let mut lists = Vec::new();
-        let meter = Meter::new(None);
-        let minima = minima::find::<I, L>(arrays, is_top, &meter.stage(Phase::Coboundary, 0));
-        minima.for_each_list(&mut |list| lists.push(list.iter().map(|top| top.to_usize()).collect()));
-        lists
+    /// The arrays with the lists by local minima.
+    fn by_minima<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> SigArrays<u64>
+    where
+        Arrays: From<SigArrays<I>>,
+    {
+        let minima = minima::find::<I, L>(arrays, is_top, &Meter::new(None).stage(Phase::Coboundary, 0));
+        pack(arrays.clone(), |ids, part| minima.write(ids, part)).into_wide()
     }
 
-    /// The lists by union-find.
-    fn by_union<I: Index>(arrays: &SigArrays<I>) -> Vec<Vec<usize>> {
-        let meter = Meter::new(None);
-        let relations = union::find(arrays, &meter.stage(Phase::Coboundary, 0));
-        let lists = relations.iter().flat_map(union::Relations::iter);
-        lists.map(|list| list.iter().map(|top| top.to_usize()).collect()).collect()
+    /// The arrays with the lists by union-find.
+    fn by_union<I: Index>(arrays: &SigArrays<I>) -> SigArrays<u64>
+    where
+        Arrays: From<SigArrays<I>>,
+    {
+        let relations = union::find(arrays, &Meter::new(None).stage(Phase::Coboundary, 0));
+        pack(arrays.clone(), |ids, part| union::write(&relations, &arrays.first, ids, part)).into_wide()
     }
 
     proptest! {
@@ -87,7 +89,7 @@ mod tests {
             }
             let expected = by_union(&arrays);
             prop_assert_eq!(by_minima::<_, u32>(&arrays, &is_top), expected.clone());
-            let wide = arrays.widen();
+            let wide = arrays.clone().widen();
             prop_assert_eq!(by_minima::<_, u64>(&wide, &is_top), expected.clone());
             prop_assert_eq!(by_union(&wide), expected);
         }

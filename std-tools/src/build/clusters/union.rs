@@ -14,6 +14,7 @@ use std::ops::Range;
 use sig_core::{Dim, Index};
 
 use crate::build::limits::Stage;
+use crate::build::lists::Part;
 use crate::build::{SigArrays, index};
 
 /// The relations of the dimensions 0, 1, …, d − 1.
@@ -50,10 +51,14 @@ impl<I> Relations<I> {
     fn of(&self, simplex: usize) -> &[I] {
         &self.entries[self.starts[simplex]..self.starts[simplex + 1]]
     }
+}
 
-    /// The entries of every simplex.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &[I]> {
-        self.starts.windows(2).map(|range| &self.entries[range[0]..range[1]])
+/// Writes the lists of a range of simplices below dimension d; `first` holds the first id of each dimension.
+pub(super) fn write<I: Index>(relations: &[Relations<I>], first: &[usize], ids: Range<usize>, part: &mut Part<I>) {
+    for (relations, range) in relations.iter().zip(first.windows(2)) {
+        for id in ids.start.max(range[0])..ids.end.min(range[1]) {
+            part.push(relations.of(id - range[0]));
+        }
     }
 }
 
