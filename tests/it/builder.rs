@@ -2,15 +2,16 @@
 //! for any order of the input and any number of threads.
 
 use proptest::prelude::*;
-use sig_core::IndexWidth;
 use sig_core::format::{Column, Container, SectionKind};
-use sig_tests::encode::{Options, encode};
+use sig_core::{AnyComplex, IndexWidth, VertexId, with_complex};
+use sig_tests::encode::{Names, Options, encode};
 use sig_tests::known;
 use sig_tests::oracle::{Oracle, Word};
 use sig_tests::strategies;
 use sig_tools::build::{Arrays, BuildOptions, Built, SigArrays, build};
 use sig_tools::incidence_graph::IncidenceGraph;
 use sig_tools::soup::{Labels, Soup};
+use sig_tools::store::{EncodeOptions, Encoding};
 
 /// The simplices as a reader would hand them on: vertex numbers by first appearance, labels in a table.
 fn soup(simplices: &[Word]) -> Soup {
@@ -54,6 +55,24 @@ fn assert_arrays(arrays: &SigArrays<u64>, oracle: &Oracle) {
     assert_eq!(last, expected, "last vertices");
 }
 
+/// The whole file, at every width and the least one, is the oracle's byte for byte.
+fn assert_file(built: &Built, oracle: &Oracle) {
+    let labels: Vec<u64> = oracle.labels().iter().map(|&label| label as u64).collect();
+    let numbered = labels.iter().copied().eq(0..labels.len() as u64);
+    let names = if numbered { Names::Numbered } else { Names::Integers(labels) };
+    let bit = |row: usize| built.parity[row / 8] >> (row % 8) & 1 == 1;
+    let parity = oracle.tops().iter().any(|&top| oracle.dim(top) > 0);
+    let parity = parity.then(|| (0..oracle.tops().len()).map(bit).collect());
+    for width in [Some(IndexWidth::Bits16), Some(IndexWidth::Bits32), Some(IndexWidth::Bits64), None] {
+        let extras = width != Some(IndexWidth::Bits32);
+        let encode_options = EncodeOptions { width, tree: extras, checksums: extras, ..EncodeOptions::default() };
+        let file = Encoding::new(built, &encode_options).unwrap().to_bytes().unwrap();
+        let (names, parity) = (names.clone(), parity.clone());
+        let options = Options { width, tree: extras, checksums: extras, names, parity, ..Options::default() };
+        assert!(file[..] == encode(oracle, &options)[..], "the file at width {width:?}");
+    }
+}
+
 fn assert_built(simplices: &[Word]) {
     let oracle = Oracle::new(simplices);
     let built = built(simplices);
@@ -68,6 +87,7 @@ fn assert_built(simplices: &[Word]) {
     assert_eq!(built.report.listed, simplices.len());
     assert_eq!(built.report.top_simplices.iter().sum::<usize>(), oracle.tops().len());
     assert_parity(simplices, &oracle, &built.parity);
+    assert_file(&built, &oracle);
     let graph = IncidenceGraph::new(&soup(simplices), &BuildOptions::default()).unwrap();
     assert_arrays(&graph.build_sig().into_wide(), &oracle);
 }
@@ -94,7 +114,7 @@ fn assert_parity(simplices: &[Word], oracle: &Oracle, parity: &[u8]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
+    #![proptest_config(ProptestConfig::with_cases(160))]
 
     #[test]
     fn equals_the_oracle(simplices in strategies::simplices()) {
@@ -169,8 +189,19 @@ fn at_the_edge_of_sixteen_bits() {
         let mut soup = Soup::new(Labels::Numbered(count as usize), true);
         (0..count).for_each(|vertex| soup.push(&[vertex]));
         let built = build(soup, &BuildOptions::default()).unwrap();
-        let Arrays::Narrow(arrays) = built.arrays else { panic!("32 bits are enough") };
+        let Arrays::Narrow(arrays) = &built.arrays else { panic!("32 bits are enough") };
         assert_eq!(arrays.num_simplices, count as usize);
         assert_eq!(arrays.child_offsets, [count]);
+        let bytes = Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap();
+        let any = AnyComplex::from_bytes(&bytes).unwrap();
+        // 65,535 vertices have ids up to 65,534, which is all that 16 bits hold beside the stop code.
+        assert_eq!(matches!(any, AnyComplex::Bits16(_)), count <= 65_535);
+        with_complex!(any, complex => {
+            assert_eq!(complex.num_vertices(), count as usize);
+            assert_eq!(complex.validate(), Ok(()));
+            let last = VertexId::new(count as usize - 1);
+            assert_eq!(complex.find(&[last]), Some(last.into()));
+            assert_eq!(complex.children(last.into()).len(), 0);
+        });
     }
 }

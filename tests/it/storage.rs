@@ -18,7 +18,7 @@ fn sections(bytes: &[u8]) -> Vec<(u16, usize, usize)> {
     };
     (0..field(20, 4))
         .map(|entry| {
-            let at = 64 + 48 * entry;
+            let at = 48 + 24 * entry;
             let (element, count) = (bytes[at + 2], field(at + 16, 8));
             let bytes = match element {
                 0 => count.div_ceil(8),

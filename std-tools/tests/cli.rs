@@ -1,0 +1,55 @@
+//! The command line: sessions in `tests/cli/*.md`, each run in a directory of its own, and the golden files made again by
+//! the commands that made them. Here and not in `tests/`, because cargo builds the binary for the tests of its package.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+fn tests_dir() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests")
+}
+
+/// With `TRYCMD=overwrite` the sessions are written anew, to be reviewed.
+#[test]
+fn sessions() {
+    trycmd::TestCases::new()
+        .register_bin("sig", Path::new(env!("CARGO_BIN_EXE_sig")))
+        .env("NO_COLOR", "1")
+        .env("COLUMNS", "100")
+        .case(tests_dir().join("cli/*.md"));
+}
+
+/// Runs `sig` in the directory of the golden files, with `input`.
+fn sig(arguments: &[&str], input: &str) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sig"))
+        .args(arguments)
+        .current_dir(tests_dir().join("data/golden"))
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "sig {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The commands of `tests/data/golden/README.md` give the golden files, byte for byte, with any number of threads.
+#[test]
+fn golden_files_are_built_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let golden = tests_dir().join("data/golden");
+    let tetrahedra = tests_dir().join("../core/tests/two-tetrahedra.sigc");
+    let cases: [(PathBuf, &[&str], &str); 5] = [
+        (golden.join("figure-16.sigc"), &["figure.simplices"], ""),
+        (golden.join("figure-32.sigc"), &["figure.simplices", "--index-bits", "32"], ""),
+        (golden.join("figure-64.sigc"), &["figure.simplices", "--index-bits", "64", "--threads", "1"], ""),
+        (golden.join("empty-16.sigc"), &["-", "--format", "simplices"], ""),
+        (tetrahedra, &["-", "--format", "simplices"], "0 1 2 3\n1 2 3 4\n4 5\n"),
+    ];
+    for (number, (expected, arguments, input)) in cases.iter().enumerate() {
+        let built = directory.path().join(format!("{number}.sigc"));
+        sig(&[&["build", "-o", built.to_str().unwrap()], *arguments].concat(), input);
+        assert!(fs::read(&built).unwrap() == fs::read(expected).unwrap(), "{}", expected.display());
+    }
+}
