@@ -1,8 +1,9 @@
 //! What a tetrahedral mesh costs: building its SIG, its file, opening it, and the star of every vertex.
 //!
 //! ```text
-//! cargo bench --bench mesh                         all of it, on Freudenthal (Kuhn) grids of three sizes
+//! cargo bench --bench mesh                         all of it, on Freudenthal (Kuhn) grids of 26³, 56³, 121³ vertices
 //! cargo bench --bench mesh -- 26 56                on grids of 26³ and 56³ vertices
+//! cargo bench --bench mesh -- skull.msh            on a tetrahedral mesh in a file
 //! GUDHI_MESH=./gudhi_mesh cargo bench --bench mesh with GUDHI's simplex tree in the same run (see benches/peers)
 //! ```
 //!
@@ -26,23 +27,22 @@ const ROUNDS: usize = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    if let [mode, side] = arguments.as_slice()
+    if let [mode, mesh] = arguments.as_slice()
         && mode == "--peak"
     {
-        return peak(side.parse()?);
+        return peak(mesh);
     }
-    let sides: Result<Vec<u32>, _> = arguments.iter().map(|side| side.parse()).collect();
-    let sides = if arguments.is_empty() { vec![26, 56, 121] } else { sides? };
-    println!("Freudenthal grids, medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
+    let meshes = if arguments.is_empty() { ["26", "56", "121"].map(str::to_owned).to_vec() } else { arguments };
+    println!("medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
     let folder = tempfile::tempdir()?;
     let mut opened = Vec::new();
-    for side in sides {
-        println!("\n{side}³ vertices");
-        let built = building(side)?;
-        let path = folder.path().join(format!("{side}.sigc"));
+    for (number, mesh) in meshes.iter().enumerate() {
+        println!("\n{mesh}");
+        let built = building(&soup_of(mesh)?, folder.path())?;
+        let path = folder.path().join(format!("{number}.sigc"));
         filed(&built, &path)?;
         drop(built);
-        peak_of_child(side)?;
+        peak_of_child(mesh)?;
         opened.push((path.clone(), opening(&path)?));
         let map = Mapped::open(&path)?;
         with_complex!(map.complex(), complex => stars(&complex)?);
@@ -106,9 +106,18 @@ fn grid(side: u32) -> Soup {
     soup
 }
 
+/// The grid of so many vertices a side, or the mesh in a file.
+fn soup_of(mesh: &str) -> Result<Soup, Box<dyn Error>> {
+    match mesh.parse() {
+        Ok(side) => Ok(grid(side)),
+        Err(_) => Ok(sig_tools::io::read_path(mesh, &sig_tools::io::ReadOptions::default())?.0),
+    }
+}
+
 /// Builds, on all threads and on one, and lets the peer do the same complex in turn.
-fn building(side: u32) -> Result<Built, Box<dyn Error>> {
-    let soup = grid(side);
+fn building(soup: &Soup, folder: &Path) -> Result<Built, Box<dyn Error>> {
+    let tetrahedra = folder.join("tetrahedra");
+    std::fs::write(&tetrahedra, bytemuck::cast_slice(soup.simplices.get(3).map_or(&[][..], Vec::as_slice)))?;
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let peer = std::env::var_os("GUDHI_MESH");
     let (mut all, mut single, mut peers) = (Vec::new(), Vec::new(), Vec::new());
@@ -124,12 +133,12 @@ fn building(side: u32) -> Result<Built, Box<dyn Error>> {
         let (seconds, built) = timed(|| one.install(|| build(input, &BuildOptions::default())));
         single.push(seconds / num_simplices(&built?));
         if let Some(program) = &peer {
-            peers.push(run_peer(program.as_ref(), side)?);
+            peers.push(run_peer(program.as_ref(), &tetrahedra)?);
         }
     }
     let built = last.ok_or("no round was run")?;
     let (all, single) = (Timing::of(all), Timing::of(single));
-    println!("  building {:.0} simplices from {} tetrahedra:", num_simplices(&built), soup.num_listed());
+    println!("  building {:.0} simplices from {} listed:", num_simplices(&built), soup.num_listed());
     println!("    all threads   {} a simplex", all.show(1e9, "ns"));
     println!("    one thread    {} a simplex", single.show(1e9, "ns"));
     if !peers.is_empty() {
@@ -152,10 +161,9 @@ fn num_simplices(built: &Built) -> f64 {
     count as f64
 }
 
-/// Seconds a simplex that the peer takes to insert the same grid.
-fn run_peer(program: &Path, side: u32) -> Result<f64, Box<dyn Error>> {
-    let side = side.to_string();
-    let output = Command::new(program).args(["lean", &side, &side, &side]).output()?;
+/// Seconds a simplex that the peer takes to insert the same tetrahedra.
+fn run_peer(program: &Path, tetrahedra: &Path) -> Result<f64, Box<dyn Error>> {
+    let output = Command::new(program).arg("lean").arg(tetrahedra).output()?;
     let text = String::from_utf8(output.stdout)?;
     let nanoseconds =
         text.split("s, ").nth(1).and_then(|rest| rest.split(" ns").next()).ok_or("no figure of the peer")?;
@@ -235,15 +243,14 @@ fn sequential_pass<I: sig_core::Index>(complex: &Complex<'_, I>, top: usize) -> 
 }
 
 /// Builds in a process of its own, which says how much memory it took at its peak.
-fn peak_of_child(side: u32) -> Result<(), Box<dyn Error>> {
-    let output = Command::new(std::env::current_exe()?).args(["--peak", &side.to_string()]).output()?;
+fn peak_of_child(mesh: &str) -> Result<(), Box<dyn Error>> {
+    let output = Command::new(std::env::current_exe()?).args(["--peak", mesh]).output()?;
     print!("{}", String::from_utf8(output.stdout)?);
     Ok(())
 }
 
-fn peak(side: u32) -> Result<(), Box<dyn Error>> {
-    let soup = grid(side);
-    let built = build(soup, &BuildOptions::default())?;
+fn peak(mesh: &str) -> Result<(), Box<dyn Error>> {
+    let built = build(soup_of(mesh)?, &BuildOptions::default())?;
     let bytes = Encoding::new(&built, &EncodeOptions::default())?.file_bytes()?;
     let status = std::fs::read_to_string("/proc/self/status")?;
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).ok_or("no VmHWM")?;
