@@ -139,10 +139,10 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
     while let Some(line) = source.next_joined_line()? {
         obj.statement(line.without_comment(b'#'))?;
     }
-    if let Some((vertex, position)) = obj.ahead {
-        if vertex >= obj.vertices {
-            return Err(Fault::new(position, out_of_range(i64::from(vertex) + 1, obj.vertices)));
-        }
+    if let Some((vertex, position)) = obj.ahead
+        && vertex >= obj.vertices
+    {
+        return Err(Fault::new(position, out_of_range(i64::from(vertex) + 1, obj.vertices)));
     }
     let labels = Labels::Integers((1..=u64::from(obj.vertices)).collect());
     Ok(obj.intake.finish(labels, true, Some((3, Scalars::F64(obj.values)))))

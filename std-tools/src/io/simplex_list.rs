@@ -155,10 +155,10 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
             None => list.line(line)?,
         }
     }
-    if let Some(Some(state)) = state {
-        if !matches!(state, State::Closed | State::Ended) {
-            return Err(truncated(source.end_of_text(), state.expected()));
-        }
+    if let Some(Some(state)) = state
+        && !matches!(state, State::Closed | State::Ended)
+    {
+        return Err(truncated(source.end_of_text(), state.expected()));
     }
     let List { labels, mut intake, .. } = list;
     let labels = if intake.report.degenerate_dropped > 0 {

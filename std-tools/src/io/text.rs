@@ -245,12 +245,11 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
 ///
 /// Short plain decimals, which meshes are made of, take a fast path of one multiplication or division.
 pub(super) fn parse_float<T: Float>(word: &[u8]) -> Option<T> {
-    if let Some((negative, mantissa, exponent)) = short_decimal(word) {
-        if !(negative && mantissa == 0) {
-            if let Some(value) = T::exact(mantissa, exponent) {
-                return if negative { Some(value.negated()) } else { Some(value) };
-            }
-        }
+    if let Some((negative, mantissa, exponent)) = short_decimal(word)
+        && !(negative && mantissa == 0)
+        && let Some(value) = T::exact(mantissa, exponent)
+    {
+        return if negative { Some(value.negated()) } else { Some(value) };
     }
     std::str::from_utf8(word).ok()?.parse().ok()
 }

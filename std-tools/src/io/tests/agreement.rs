@@ -103,10 +103,10 @@ fn msh(mesh: &Mesh) -> String {
 /// A soup with what formats differ in made equal: labels, and the precision of coordinates.
 fn levelled(mut soup: Soup) -> Soup {
     soup.labels = Labels::Numbered(soup.labels.len());
-    if let Some(coordinates) = &mut soup.coordinates {
-        if let Scalars::F32(values) = &coordinates.values {
-            coordinates.values = Scalars::F64(values.iter().map(|&value| value.into()).collect());
-        }
+    if let Some(coordinates) = &mut soup.coordinates
+        && let Scalars::F32(values) = &coordinates.values
+    {
+        coordinates.values = Scalars::F64(values.iter().map(|&value| value.into()).collect());
     }
     soup
 }
