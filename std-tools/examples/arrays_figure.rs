@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     draw_complex(&complex, &mut svg)?;
     let bottom = draw_arrays(&complex, &mut svg)?;
     println!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 1180 {bottom}\" font-family=\"sans-serif\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 780 {bottom}\" font-family=\"sans-serif\" \
          font-size=\"14\" text-anchor=\"middle\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{svg}</svg>"
     );
     Ok(())
@@ -34,7 +34,7 @@ fn draw_complex(complex: &Complex<'_, u16>, svg: &mut String) -> Result<(), Box<
     let components = coordinates.components as usize;
     let at = |vertex: usize| {
         let value = |axis| coordinates.column.number_at(vertex * components + axis).unwrap_or(0.0);
-        (420.0 + 80.0 * value(0), 160.0 - 80.0 * value(1))
+        (130.0 + 80.0 * value(0), 160.0 - 80.0 * value(1))
     };
     for dim in (0..=complex.dim().unwrap_or(0)).rev() {
         for simplex in complex.simplices_of_dim(dim) {

@@ -1,4 +1,35 @@
-//! Build, write, map and query Simplified Incidence Graphs.
+//! Build, write, map and query Simplified Incidence Graphs: the library behind the command `sig`.
+//!
+//! Data flow one way: files are read into a [`soup`], the soup is built into arrays in canonical order, the arrays are
+//! encoded and written, and the file is mapped and queried through [`sig_core`].
+//!
+//! | step | module | main entry |
+//! |---|---|---|
+//! | read meshes and lists of simplices | [`io`] | [`io::read_path`], [`io::merge`](io::merge()) |
+//! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
+//! | arrays in canonical order | [`mod@build`] | [`build::build`] |
+//! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
+//! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
+//! | what `sig info` says of a complex | [`analysis`] | [`analysis::Analysis`] |
+//! | simplices by the input's labels | [`names`], [`tops`] | [`names::find_simplex`] |
+//! | write meshes and lists | [`export`] | [`export::export`](export::export()) |
+//!
+//! ```
+//! # use sig_tools::{build, io, store, store::atomic, Mapped};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let (mesh, out) = (folder.path().join("a.off"), folder.path().join("a.sigc"));
+//! # std::fs::write(&mesh, "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")?;
+//! let (soup, report) = io::read_path(&mesh, &io::ReadOptions::default())?;
+//! let built = build::build(soup, &build::BuildOptions::default())?;
+//! let file = store::Encoding::new(&built, &store::EncodeOptions::default())?;
+//! atomic::write(&out, atomic::Existing::Refuse, |out| file.write_to(out))?;
+//! let map = Mapped::open(&out)?;
+//! assert_eq!(sig_core::with_complex!(map.complex(), complex => complex.num_simplices()), 7);
+//! # assert_eq!(report.vertices, 3);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod analysis;
 pub mod build;
@@ -11,3 +42,8 @@ pub mod store;
 pub mod tops;
 
 pub use store::{Loaded, Mapped, OwnedScratch};
+
+/// The examples of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -2,6 +2,7 @@
 
 mod builder;
 mod format;
+mod format_book;
 mod fuzz_corpus;
 mod golden;
 mod hostile;
