@@ -2,11 +2,16 @@
 //! the simplex tree, on buffers that went through bytes.
 
 use proptest::prelude::*;
-use sig_core::{AnyComplex, IndexWidth, with_complex};
+use sig_core::{AnyComplex, IndexWidth, SimplexId, VertexId, with_complex};
 use sig_tests::conformance::{assert_agrees_with_the_paper, assert_conforms};
 use sig_tests::encode::{Options, encode};
+use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::strategies;
+use sig_tools::build::{BuildOptions, build};
+use sig_tools::soup::{Labels, Soup};
+use sig_tools::store::{EncodeOptions, Encoding};
+use sig_tools::{Loaded, OwnedScratch};
 
 fn check(oracle: &Oracle, width: IndexWidth, tree: bool) {
     let bytes = encode(oracle, &Options { tree, ..Options::bare(width) });
@@ -58,4 +63,39 @@ fn of_many_isolated_vertices() {
     assert_eq!((complex.num_vertices(), complex.dim()), (3000, Some(0)));
     assert_eq!(complex.validate(), Ok(()));
     assert!(complex.simplices().all(|vertex| complex.is_top(vertex)));
+}
+
+/// Triangles on one edge: each query takes time linear in its answer. With n² steps this test would not end.
+#[test]
+fn of_a_book_of_many_pages() {
+    const PAGES: u32 = 200_000;
+    let mut soup = Soup::new(Labels::Numbered(PAGES as usize + 2), true);
+    for page in 2..PAGES + 2 {
+        soup.push(&[0, 1, page]);
+    }
+    let built = build(soup, &BuildOptions::default()).unwrap();
+    let file = Loaded::from_file_bytes(Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap());
+    let file = file.unwrap();
+    let AnyComplex::Bits32(complex) = file.complex() else { panic!("32 bits") };
+    let pages = PAGES as usize;
+    let mut memory = OwnedScratch::new(&complex);
+    let mut scratch = memory.scratch();
+    let (vertex, spine) = (SimplexId::new(0), complex.find(&[VertexId::new(0), VertexId::new(1)]).unwrap());
+    assert_eq!(complex.coboundary(vertex, 2, &mut scratch).unwrap().len(), pages);
+    assert_eq!(complex.coboundary(vertex, 1, &mut scratch).unwrap().len(), pages + 1);
+    assert_eq!(complex.star(vertex, &mut scratch).unwrap().len(), 2 * pages + 2);
+    assert_eq!(complex.link(vertex, &mut scratch).unwrap().len(), 2 * pages + 1);
+    assert_eq!(complex.coboundary(spine, 2, &mut scratch).unwrap().len(), pages);
+    assert_eq!(complex.link(spine, &mut scratch).unwrap().len(), pages);
+    assert_eq!(complex.clusters(spine).count(), pages);
+}
+
+/// Facets with three and more top simplices, which gathering marks, in clusters of several dimensions at once.
+#[test]
+fn of_crowded_facets_below_other_clusters() {
+    let books = "0123 0124 0125 0126 017 018 019 016 028 029 027 0178 0179";
+    let oracle = Oracle::new(&known::words(books));
+    for width in IndexWidth::ALL {
+        check(&oracle, width, true);
+    }
 }

@@ -37,11 +37,11 @@ impl<I: Index> Complex<'_, I> {
         scratch: &mut Scratch<'_, I>,
     ) -> Result<(), ScratchError> {
         let Some(own) = self.dim_of(simplex).filter(|&own| dim > own) else { return Ok(()) };
-        for cluster in self.clusters(simplex) {
-            if cluster.dim < dim {
-                // The clusters come by decreasing dimension.
-                break;
-            }
+        // Gathering a cluster of dimension g + 1 marks some of its g-faces, which must not be in the answer yet. No two
+        // such clusters share a g-face around σ, so it is enough that they come before those of higher dimension.
+        let near = self.clusters(simplex).filter(|cluster| cluster.dim == dim + 1);
+        let others = self.clusters(simplex).filter(|cluster| cluster.dim != dim + 1);
+        for cluster in near.chain(others).filter(|cluster| cluster.dim >= dim) {
             if cluster.dim == own + 1 {
                 // The cluster is one simplex, and of dimension `dim`.
                 I::from_usize(cluster.representative.index()).map_or(Ok(()), |top| scratch.report(top))?;
