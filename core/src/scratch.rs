@@ -71,7 +71,7 @@ impl core::error::Error for ScratchError {}
 /// |---|---|
 /// | `marks` | [`mark_words`]`(n)` words, n the number of simplices: for every query |
 /// | `queue`, `masks` | the largest cluster of a co-boundary or cluster query; the whole star for a star query |
-/// | `found` | the answer of any query but the star |
+/// | `found` | the answer of any query but star and cluster; for adjacency, repetitions and σ too |
 ///
 /// A traversal clears its marks before it hands out the first item, walking what it marked: breaking out of a loop over
 /// the answer, or an error, leaves the scratch ready for the next query.

@@ -164,6 +164,12 @@ impl<'a> Sections<'_, 'a> {
             }
         }
         let has = |kind| self.container.section(kind).is_some();
+        if let (Some(_), Some(offsets)) =
+            (self.container.section(SectionKind::IntegerLabels), self.container.section(SectionKind::LabelOffsets))
+        {
+            // Two names for one vertex.
+            return Err(self.wrong(&offsets, TableError::Order));
+        }
         if has(SectionKind::LabelText) != has(SectionKind::LabelOffsets) {
             let text = has(SectionKind::LabelText);
             let missing = if text { SectionKind::LabelOffsets } else { SectionKind::LabelText };

@@ -63,7 +63,8 @@ impl Entry {
         Ok(())
     }
 
-    fn read(bytes: &[u8], start: usize, order: ByteOrder) -> Self {
+    /// Reads the entry that starts at byte `start`.
+    pub(super) fn read(bytes: &[u8], start: usize, order: ByteOrder) -> Self {
         let at = |offset: usize| bytes.get(start + offset).copied().unwrap_or(0);
         Self {
             code: get_u16(bytes, start, order),

@@ -4,7 +4,7 @@ use super::FormatError;
 use super::container::Container;
 use super::header::RawHeader;
 use super::section::element_bytes;
-use super::table::{Entries, Entry, entry_start};
+use super::table::{Entry, entry_start};
 
 /// In which order the bytes of an integer stand.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -76,10 +76,10 @@ pub fn swap_byte_order(bytes: &mut [u8]) -> Result<(), FormatError> {
     let from = if native { ByteOrder::NATIVE } else { ByteOrder::NATIVE.other() };
     let header = *Container::parse(bytes, from)?.header();
     // The sections lie apart from the table, and its entries are swapped after them.
-    for number in 0..header.sections as usize {
-        let entry = Entries::new(bytes, &header, from).nth(number);
-        let (range, size) = entry.map_or((0..0, None), |(entry, _)| (entry.range(), element_bytes(entry.element)));
-        for element in bytes.get_mut(range).unwrap_or_default().chunks_exact_mut(size.unwrap_or(1)) {
+    for number in 0..header.sections {
+        let entry = Entry::read(bytes, entry_start(number), from);
+        let section = bytes.get_mut(entry.range()).unwrap_or_default();
+        for element in section.chunks_exact_mut(element_bytes(entry.element).unwrap_or(1)) {
             element.reverse();
         }
     }

@@ -10,8 +10,8 @@ impl<I: Index> Complex<'_, I> {
     /// A_p(σ): for p > 0 the other p-simplices that share a (p−1)-face with σ; for p = 0 the other ends of the edges at
     /// the vertex.
     ///
-    /// Cost: that of C_{p−1,p} for each of the p + 1 facets, so linear in the number of top simplices incident at them;
-    /// for p = 0 that of C_{0,1}. Source: Algorithm 7, which lists σ itself too.
+    /// Cost: that of C_{p−1,p} for each facet τ, so O(Σ_τ Σ_{r≥p} λ_r(τ)), linear in the top simplices incident at the
+    /// facets; for p = 0 that of C_{0,1}. The answer's part of the scratch needs room for σ once for each facet besides. Source: Algorithm 7, which lists σ itself too.
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.

@@ -32,7 +32,8 @@ impl<I: Index> Complex<'_, I> {
     /// The simplices of the cluster around `simplex` to which `representative`, any of its simplices, belongs; empty if
     /// that is not a top simplex in the restricted star.
     ///
-    /// Cost: O(λ_g(σ)), the number of simplices reported, with about 3g reads for each. Source: Algorithm 6.
+    /// Cost: O(λ_g(σ)), the number of simplices reported, with about 3g reads for each, and
+    /// the entries of higher dimension in the lists of their facets. Source: Algorithm 6.
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.
@@ -56,8 +57,6 @@ impl<I: Index> Complex<'_, I> {
     }
 
     /// Appends a cluster around a p-simplex to the queue, marked, each simplex with the mask of σ in it.
-    ///
-    /// On the way it may mark facets around σ of the cluster's simplices, and so must find them unmarked.
     pub(crate) fn gather_cluster(
         &self,
         simplex: SimplexId,
@@ -76,45 +75,21 @@ impl<I: Index> Complex<'_, I> {
         }
         // A representative that does not contain σ: only in a buffer that is not a complex.
         let Some(mask) = self.positions(simplex, representative).filter(|_| top_dim > dim) else { return Ok(()) };
-        let start = scratch.queue.len();
+        let mut head = scratch.queue.len();
         scratch.visit(first, mask)?;
-        let mut crowded = false;
-        let walked = self.walk_cluster(start, top_dim, &mut crowded, scratch);
-        if crowded {
-            self.unmark_facets(start, top_dim, scratch);
-        }
-        walked
-    }
-
-    /// Walks the queue from position `start` on, to which it adds what it meets.
-    fn walk_cluster(
-        &self,
-        start: usize,
-        dim: Dim,
-        crowded: &mut bool,
-        scratch: &mut Scratch<'_, I>,
-    ) -> Result<(), ScratchError> {
-        let mut head = start;
         while let Some((top, mask)) = scratch.queue.get(head) {
             head += 1;
-            self.cross_facets(top, dim, mask, crowded, scratch)?;
+            self.cross_facets(top, top_dim, mask, scratch)?;
         }
         Ok(())
     }
 
     /// Visits the top simplices that share a facet around σ with `top`.
     ///
-    /// A facet of a manifold has two of them. Where there are more, the facet is marked and its list read to the end only
-    /// once, not once for each of them: else a book of n pages would take n² steps. That sets `crowded`.
+    /// The first of them leads to all others, and each other one to the first: so the list of a facet with many is read to
+    /// its end once, not once for each of them. Else a book of n pages would take n² steps.
     #[inline]
-    fn cross_facets(
-        &self,
-        top: I,
-        dim: Dim,
-        mask: u32,
-        crowded: &mut bool,
-        scratch: &mut Scratch<'_, I>,
-    ) -> Result<(), ScratchError> {
+    fn cross_facets(&self, top: I, dim: Dim, mask: u32, scratch: &mut Scratch<'_, I>) -> Result<(), ScratchError> {
         let row = self.row(dim, top.to_usize());
         let ids = self.levels().ids(dim);
         let mut free = all_positions(dim) & !mask;
@@ -123,39 +98,24 @@ impl<I: Index> Complex<'_, I> {
             free &= free - 1;
             let Some(&facet) = row.get(position) else { continue };
             let mut entries = self.partial_coboundary(SimplexId::new(facet.to_usize()));
-            let mut read = 0;
+            let mut is_first = true;
             while let Some(other) = entries.next_index() {
-                read += 1;
-                if read == 3 {
-                    if !scratch.mark(facet.to_usize()) {
-                        break;
-                    }
-                    *crowded = true;
-                }
-                // `top` is marked, but most facets have it and one other: no need to look.
-                if other == top || !ids.contains(&other.to_usize()) || !scratch.mark(other.to_usize()) {
+                if !ids.contains(&other.to_usize()) {
                     continue;
                 }
-                let other_row = self.row(dim, other.to_usize());
-                let entered = other_row.iter().position(|&shared| shared == facet).unwrap_or(0);
-                let mask = insert_zero(delete_bit(mask, position), entered);
-                scratch.queue.push(other, mask).inspect_err(|_| scratch.unmark(other.to_usize()))?;
+                if other != top && scratch.mark(other.to_usize()) {
+                    let other_row = self.row(dim, other.to_usize());
+                    let entered = other_row.iter().position(|&shared| shared == facet).unwrap_or(0);
+                    let mask = insert_zero(delete_bit(mask, position), entered);
+                    scratch.queue.push(other, mask).inspect_err(|_| scratch.unmark(other.to_usize()))?;
+                }
+                if is_first && other != top {
+                    break;
+                }
+                is_first = false;
             }
         }
         Ok(())
-    }
-
-    /// Clears the marks of the facets around σ of what is queued from position `start` on.
-    fn unmark_facets(&self, start: usize, dim: Dim, scratch: &mut Scratch<'_, I>) {
-        let mut head = start;
-        while let Some((top, mask)) = scratch.queue.get(head) {
-            head += 1;
-            for (position, facet) in self.row(dim, top.to_usize()).iter().enumerate() {
-                if mask >> position & 1 == 0 {
-                    scratch.unmark(facet.to_usize());
-                }
-            }
-        }
     }
 }
 

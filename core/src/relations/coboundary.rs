@@ -11,7 +11,7 @@ use crate::scratch::{Scratch, ScratchError};
 impl<I: Index> Complex<'_, I> {
     /// C_{p,g}(σ): the g-simplices in the restricted star of a p-simplex, g > p; empty for g ≤ p or g > d.
     ///
-    /// Cost: O(Σ_{g≤r≤d} λ_r(σ)), with a factor that depends on p, g and r only: (r+1 over g−p) faces for a top
+    /// Cost: O(Σ_{g≤r≤d} λ_r(σ)), with a factor that depends on p, g and r only: (r−p over g−p) faces for a top
     /// r-simplex. For g = d it is linear in the answer. Source: Algorithms 5 and 6.
     ///
     /// # Errors
@@ -37,11 +37,8 @@ impl<I: Index> Complex<'_, I> {
         scratch: &mut Scratch<'_, I>,
     ) -> Result<(), ScratchError> {
         let Some(own) = self.dim_of(simplex).filter(|&own| dim > own) else { return Ok(()) };
-        // Gathering a cluster of dimension g + 1 marks some of its g-faces, which must not be in the answer yet. No two
-        // such clusters share a g-face around σ, so it is enough that they come before those of higher dimension.
-        let near = self.clusters(simplex).filter(|cluster| cluster.dim == dim + 1);
-        let others = self.clusters(simplex).filter(|cluster| cluster.dim != dim + 1);
-        for cluster in near.chain(others).filter(|cluster| cluster.dim >= dim) {
+        // The clusters come by decreasing dimension.
+        for cluster in self.clusters(simplex).take_while(|cluster| cluster.dim >= dim) {
             if cluster.dim == own + 1 {
                 // The cluster is one simplex, and of dimension `dim`.
                 I::from_usize(cluster.representative.index()).map_or(Ok(()), |top| scratch.report(top))?;

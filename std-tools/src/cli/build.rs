@@ -112,7 +112,10 @@ impl Args {
         if output::is_stdout(path) && std::io::stdout().is_terminal() {
             return Err(UsageError("-o - writes a binary file, and standard output is a terminal".to_owned()).into());
         }
-        output::check(path, existing)?;
+        output::check(path, existing, &self.inputs)?;
+        if self.inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
+            return Err(UsageError("standard input can be read only once".to_owned()).into());
+        }
         if let Some(threads) = self.threads {
             rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
         }

@@ -36,11 +36,14 @@ impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let format = self.format()?;
         let (path, existing) = (&self.target.output, self.target.existing());
-        output::check(path, existing)?;
+        output::check(path, existing, std::slice::from_ref(&self.file))?;
         let input = Input::open(&self.file, Access::Normal)?;
         let complex = input.complex();
-        with_complex!(complex, complex => export::check(&complex, format))
-            .with_context(|| self.file.display().to_string())?;
+        let file = || self.file.display().to_string();
+        // As long as writing, and a damaged file would come out as a mesh that is another.
+        with_complex!(complex, complex => complex.validate())
+            .with_context(|| format!("{}: damaged; see sig verify", file()))?;
+        with_complex!(complex, complex => export::check(&complex, format)).with_context(file)?;
         let mut notes = Vec::new();
         output::to_path(path, existing, |out| {
             notes =

@@ -1,7 +1,8 @@
 //! The command line: one thin file a subcommand. Each parses its arguments, calls the library and prints.
 //!
 //! Standard output is data, standard error what is said about the work. Exit codes: 0 done, 1 the data say no or cannot
-//! be read or written, 2 the command line is wrong, 130 interrupted.
+//! be read or written, 2 the command line is wrong, 128 and its
+//! number if a signal ends the work.
 
 mod build;
 mod completions;
@@ -37,7 +38,8 @@ Examples:
   sig verify bunny.sigc                 whether it is whole and right
   sig export bunny.sigc -o bunny.vtu    for ParaView
 
-Exit codes: 0 done; 1 the data say no, or cannot be read or written; 2 wrong command line; 130 interrupted.";
+Exit codes: 0 done; 1 the data say no, or cannot be read or written; 2 wrong command line; 130
+interrupted, and 128 and its number for other signals.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -95,13 +97,35 @@ struct Silent;
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     // Without a handler an interrupt ends the process all the same, and leaves the temporary of a file behind.
-    if let Err(error) = ctrlc::set_handler(|| atomic::abort(130)) {
+    if let Err(error) = handle_signals() {
         output::log(format_args!("sig: warning: cannot handle interrupts: {error}"));
     }
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => explain(&error),
     }
+}
+
+/// Has the signals that end a process remove the temporary first; the exit code is 128 and the number of the signal. One
+/// that is ignored, as `nohup` and shells arrange it, stays ignored.
+fn handle_signals() -> io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored_signals();
+    let handled = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let mut signals = signal_hook::iterator::Signals::new(handled)?;
+    std::thread::spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            atomic::abort(128 + signal);
+        }
+    });
+    Ok(())
+}
+
+/// The signals that this process was started to ignore, a bit each; none where the system does not tell.
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 /// Prints an error with its causes, and tells the exit code.

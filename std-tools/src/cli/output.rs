@@ -7,6 +7,8 @@ use std::path::Path;
 use serde::Serialize;
 use sig_tools::store::atomic::{self, Existing};
 
+use super::UsageError;
+
 /// Says something about the work on standard error; if nobody listens there, the work goes on.
 pub(super) fn log(message: impl Display) {
     let _ = writeln!(io::stderr(), "{message}");
@@ -32,12 +34,17 @@ pub(super) fn json(value: &impl Serialize) -> io::Result<()> {
     })
 }
 
-/// Checks, before the long work, that [`to_path`] will not be refused.
-pub(super) fn check(path: &Path, existing: Existing) -> anyhow::Result<()> {
-    if !is_stdout(path) {
-        atomic::check(path, existing)?;
+/// Checks, before the long work, that [`to_path`] will not be refused, and that it replaces none of the inputs.
+pub(super) fn check(path: &Path, existing: Existing, inputs: &[std::path::PathBuf]) -> anyhow::Result<()> {
+    if is_stdout(path) {
+        return Ok(());
     }
-    Ok(())
+    let place = std::fs::canonicalize(path).ok();
+    if let Some(input) = inputs.iter().find(|input| place.is_some() && std::fs::canonicalize(input).ok() == place) {
+        let message = format!("{}: the output would replace the input; give it another name", input.display());
+        return Err(UsageError(message).into());
+    }
+    Ok(atomic::check(path, existing)?)
 }
 
 /// Writes a file, or to standard output if the path is `-`.

@@ -95,6 +95,9 @@ impl<'a, I: Index> Mesh<'a, I> {
         let (mut vertices, mut places) = (Vec::new(), Vec::new());
         for top in top_simplices(&self.complex).filter(|top| dims.contains(&top.dim)) {
             top.oriented_vertices(&self.complex, &mut vertices);
+            if vertices.len() != top.dim + 1 {
+                return Err(io::Error::other("a simplex without its vertices: the complex is not valid"));
+            }
             places.clear();
             places.extend(vertices.iter().map(|&vertex| self.place(vertex)));
             cell(&places)?;

@@ -8,8 +8,10 @@ use super::{Format, obj, off, simplex_list, stl};
 pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Fault> {
     let length = source.whole_length()?;
     let head = source.head()?;
+    // A list of simplices goes by many names, `.txt` among them, so content that looks like a mesh comes before it.
+    let by_name = by_name(name);
     certain(head, length)
-        .or_else(|| by_name(name))
+        .or_else(|| if by_name == Some(Format::SimplexList) { suggested(head).or(by_name) } else { by_name })
         .or_else(|| suggested(head))
         .ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownFormat))
 }

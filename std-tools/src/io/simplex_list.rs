@@ -40,6 +40,11 @@ struct List {
 impl List {
     /// Adds a label to the simplex at hand.
     fn label(&mut self, word: Word<'_>, line: &Line<'_>) -> Result<(), Fault> {
+        // In a row, a slip in a list of the other spelling; and never a label that could be written in a list again.
+        let no_label = |&byte: &u8| byte.is_ascii_control() || matches!(byte, b'[' | b']' | b';');
+        if word.bytes.iter().any(no_label) {
+            return Err(line.unexpected(word, "a vertex label without brackets, semicolons and control characters"));
+        }
         let vertex = match (canonical(word.bytes), std::str::from_utf8(word.bytes)) {
             (Some(integer), _) => self.labels.number_integer(integer),
             (None, Ok(label)) => self.labels.number(label),

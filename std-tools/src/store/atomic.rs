@@ -21,7 +21,7 @@ pub enum Existing {
     Replace,
 }
 
-/// Why a file is not written. The name it was to have is in the state it was in before.
+/// Why a file is not written. But for [`Sync`](Self::Sync), the name it was to have is in the state it was in before.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
@@ -57,6 +57,16 @@ pub enum WriteError {
         #[source]
         error: io::Error,
     },
+    /// The file is there, whole and under its name, but its directory could not be brought to disk: a crash of the system
+    /// may yet undo the renaming.
+    #[error("{}: written, but its directory cannot be synchronised: {error}", path.display())]
+    Sync {
+        /// The name.
+        path: PathBuf,
+        /// What the system says.
+        #[source]
+        error: io::Error,
+    },
 }
 
 /// Checks, before the long work starts, that a file called `path` may be written.
@@ -66,6 +76,9 @@ pub enum WriteError {
 /// # Errors
 /// [`WriteError::Exists`] and [`WriteError::NotAFile`]; [`WriteError::Create`] if there is no such directory.
 pub fn check(path: &Path, existing: Existing) -> Result<(), WriteError> {
+    if existing == Existing::Refuse && path.is_symlink() {
+        return Err(WriteError::Exists { path: path.to_owned() });
+    }
     match fs::metadata(path) {
         Ok(found) if !found.is_file() => return Err(WriteError::NotAFile { path: path.to_owned() }),
         Ok(_) if existing == Existing::Refuse => return Err(WriteError::Exists { path: path.to_owned() }),
@@ -88,15 +101,21 @@ pub fn write(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
     check(path, existing)?;
+    // A link stays one: what it leads to is replaced.
+    let resolved = fs::canonicalize(path).ok().filter(|_| path.is_symlink());
+    let path = resolved.as_deref().unwrap_or(path);
     let failed = |error| WriteError::Write { path: path.to_owned(), error };
     let mut temporary = Temporary::create(path)?;
     let file = temporary.file.as_file_mut();
     let mut out = BufWriter::with_capacity(1 << 16, file);
     fill(&mut out).and_then(|()| out.flush()).map_err(failed)?;
     drop(out);
+    if let Ok(replaced) = fs::metadata(path) {
+        temporary.file.as_file().set_permissions(replaced.permissions()).map_err(failed)?;
+    }
     temporary.file.as_file().sync_all().map_err(failed)?;
     temporary.persist(path, existing)?;
-    sync_directory(directory_of(path)).map_err(failed)
+    sync_directory(directory_of(path)).map_err(|error| WriteError::Sync { path: path.to_owned(), error })
 }
 
 /// The temporaries that exist.
@@ -183,9 +202,13 @@ fn directory_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Brings a directory to disk, and with it a rename in it.
+/// Brings a directory to disk, and with it a rename in it, where the system lets it be opened.
 fn sync_directory(directory: &Path) -> io::Result<()> {
-    if cfg!(unix) { File::open(directory)?.sync_all() } else { Ok(()) }
+    match File::open(directory) {
+        Ok(directory) if cfg!(unix) => directory.sync_all(),
+        Err(error) if error.kind() != io::ErrorKind::PermissionDenied && cfg!(unix) => Err(error),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -260,5 +283,22 @@ mod tests {
         fs::write(&plain, b"").unwrap();
         let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
         assert_eq!(mode(&ours), mode(&plain));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_and_links_stay_when_a_file_is_replaced() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = tempfile::tempdir().unwrap();
+        let (file, link) = (directory.path().join("file"), directory.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        assert!(matches!(check(&link, Existing::Refuse), Err(WriteError::Exists { .. })));
+        write(&link, Existing::Replace, |out| out.write_all(b"new")).unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o600);
+        assert_eq!(names(directory.path()), ["file", "link"]);
     }
 }

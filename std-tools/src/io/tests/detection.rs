@@ -35,7 +35,7 @@ fn the_name_beats_content_that_only_suggests() {
     let vertices = "v 1 2 3\nv 4 5 6\nv 7 8 9\n";
     assert_eq!(detected("-", vertices), Some(Format::Obj));
     assert_eq!(detected("x.OBJ", vertices), Some(Format::Obj));
-    assert_eq!(detected("x.txt", vertices), Some(Format::SimplexList));
+    assert_eq!(detected("x.txt", vertices), Some(Format::Obj));
     assert_eq!(detected("-", "# list\nfacets:=[[1,2],[2,3]];\n"), Some(Format::SimplexList));
     assert_eq!(detected("x.off", "1 0 0\n0 0 0\n"), Some(Format::Off));
     assert_eq!(detected("a.b/x.simplices", "1 0 0x\n"), Some(Format::SimplexList));
