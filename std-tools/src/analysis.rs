@@ -40,8 +40,9 @@ impl Analysis {
                 is_pseudo_manifold: false,
             };
         };
-        let top_simplices: Vec<usize> =
-            (0..=dim).map(|p| complex.simplices_of_dim(p).filter(|&simplex| complex.is_top(simplex)).count()).collect();
+        // The d-simplices need no look: all are top simplices.
+        let tops = |p| complex.simplices_of_dim(p).filter(|&simplex| complex.is_top(simplex)).count();
+        let top_simplices: Vec<usize> = (0..dim).map(tops).chain([complex.num_simplices_of_dim(dim)]).collect();
         let h_components = h_components(complex, &top_simplices);
         let is_regular = top_simplices[..dim].iter().all(|&count| count == 0);
         let is_pseudo_manifold = is_regular

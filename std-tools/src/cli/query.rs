@@ -16,7 +16,7 @@ use super::{UsageError, output};
 /// Print a relation of a simplex: its boundary, star, link, …
 ///
 /// Answers come in the order of the ids, one simplex a line as labels separated by commas; with --json an array of
-/// arrays of labels.
+/// arrays of labels; of clusters, an array of objects with dimension, representative and members.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -6,8 +6,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
-use sig_core::AnyComplex;
 use sig_core::format::{FormatError, swap_byte_order};
+use sig_core::{AnyComplex, with_complex};
 
 use super::AlignedBytes;
 
@@ -33,6 +33,12 @@ pub enum OpenErrorKind {
     /// It is empty.
     #[error("the file is empty, not a SIG file")]
     Empty,
+    /// It promises isolated vertices without end.
+    #[error("{vertices} vertices and nothing else: more than can be worked with")]
+    TooManyVertices {
+        /// How many.
+        vertices: usize,
+    },
     /// It is not a simplicial complex in the format of this crate, or damaged.
     #[error("{0}")]
     Format(#[source] FormatError),
@@ -53,8 +59,13 @@ fn check(path: &Path, bytes: &[u8]) -> Result<(), OpenError> {
     if bytes.is_empty() {
         return Err(OpenError::new(path, OpenErrorKind::Empty));
     }
-    let checked = AnyComplex::from_bytes(bytes);
-    checked.map(|_| ()).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))
+    let checked = AnyComplex::from_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
+    // Vertices alone take no bytes, so a small file may promise more of them than any memory has marks for.
+    let simplices = with_complex!(checked, complex => complex.num_simplices());
+    if simplices >> 36 != 0 && simplices / 64 > bytes.len() {
+        return Err(OpenError::new(path, OpenErrorKind::TooManyVertices { vertices: simplices }));
+    }
+    Ok(())
 }
 
 /// How a mapped file will be read, so that the system can read ahead or not.
@@ -172,7 +183,10 @@ impl Loaded {
         if bytes.is_empty() {
             return Err(OpenError::new(path, OpenErrorKind::Empty));
         }
-        Self::from_file_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))
+        let loaded =
+            Self::from_file_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
+        check(path, &loaded.bytes)?;
+        Ok(loaded)
     }
 
     /// The complex in the bytes of a file as it lies on disk.

@@ -36,9 +36,10 @@ impl<I: Index> OwnedScratch<I> {
     /// [`run`](Self::run).
     #[must_use]
     pub fn new(complex: &Complex<'_, I>) -> Self {
-        let count = complex.num_simplices();
+        // An answer has only simplices that stand in the buffer, and perhaps the one that was asked for.
+        let count = complex.num_simplices().min(complex.container().bytes().len());
         Self {
-            marks: vec![0; mark_words(count)],
+            marks: vec![0; mark_words(complex.num_simplices())],
             queue: vec![I::ZERO; count],
             masks: vec![0; count],
             found: vec![I::ZERO; count],
