@@ -6,11 +6,11 @@ use sig_core::format::{
     TableError,
 };
 use sig_core::{AnyComplex, Complex, IndexWidth, VertexId, with_complex};
-use sig_tests::aligned::AlignedBytes;
 use sig_tests::encode::{Names, Options, encode};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::queries::reseal;
+use sig_tools::store::AlignedBytes;
 
 fn example() -> Oracle {
     Oracle::new(&known::words("0123 014 25 6"))

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use sig_core::{Complex, IndexWidth};
-use sig_tests::aligned::AlignedBytes;
 use sig_tests::conformance::assert_conforms;
 use sig_tests::encode::{Options, encode};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
+use sig_tools::store::AlignedBytes;
 
 /// The bytes of the block marked `hex`: an offset, 16 bytes and a remark a row; rows of zeros are left out.
 fn example(book: &str, len: usize) -> AlignedBytes {

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use sig_core::format;
 use sig_core::{Complex, IndexWidth};
-use sig_tests::aligned::AlignedBytes;
 use sig_tests::conformance::assert_conforms;
 use sig_tests::encode::{Names, Options, encode, least_width};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
+use sig_tools::store::AlignedBytes;
 
 fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/golden").join(name)

@@ -5,11 +5,11 @@
 
 use sig_core::format::{Container, ENTRY_BYTES, HEADER_BYTES, SectionKind};
 use sig_core::{AnyComplex, IndexWidth, with_complex};
-use sig_tests::aligned::AlignedBytes;
 use sig_tests::encode::{Options, encode};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::queries::{ask_everything, reseal};
+use sig_tools::store::AlignedBytes;
 
 /// The seed of the first mutant; mutant k has this plus k.
 const SEED: u64 = 2004;

@@ -4,11 +4,11 @@
 //! d + 1 of the lookup table, which the comparisons of section 7 leave out too.
 
 use sig_core::{Complex, IndexWidth, SimplexId, VertexId};
-use sig_tests::aligned::AlignedBytes;
 use sig_tests::conformance::{Memory, assert_conforms};
 use sig_tests::encode::{Options, encode};
 use sig_tests::known::{seven_vertex_torus, words};
 use sig_tests::oracle::Oracle;
+use sig_tools::store::AlignedBytes;
 
 fn file(simplices: &str) -> AlignedBytes {
     let oracle = Oracle::new(&words(simplices));

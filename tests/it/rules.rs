@@ -3,11 +3,11 @@
 use proptest::prelude::*;
 use sig_core::format::{Container, FormatError, Rule, SectionKind};
 use sig_core::{AnyComplex, Complex, IndexWidth, with_complex};
-use sig_tests::aligned::AlignedBytes;
 use sig_tests::encode::{Names, Options, encode};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::strategies;
+use sig_tools::store::AlignedBytes;
 
 fn validate(bytes: &AlignedBytes) -> Result<(), FormatError> {
     let any = AnyComplex::from_bytes(bytes)?;

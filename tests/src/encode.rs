@@ -4,8 +4,8 @@
 use sig_core::format::{Column, Encoder, Kind, Section, SectionKind};
 use sig_core::{Dim, IndexWidth};
 
-use crate::aligned::AlignedBytes;
 use crate::oracle::Oracle;
+use sig_tools::store::AlignedBytes;
 
 /// Integers of one of the three widths.
 #[derive(Clone, PartialEq, Eq, Debug)]

@@ -9,11 +9,11 @@ pub use sig_tools::io::Format;
 use sig_tools::io::{ReadOptions, read_bytes};
 use sig_tools::soup::{Labels, Scalars, Soup};
 
-use crate::aligned::AlignedBytes;
 use crate::conformance;
 use crate::encode::{Options, encode};
 use crate::oracle::{Oracle, Word};
 use crate::queries::{ask_everything, reseal};
+use sig_tools::store::AlignedBytes;
 
 /// Simplices of which everything is asked.
 const ASKED: usize = 48;

@@ -5,7 +5,6 @@
 //! [`conformance`] compares a view with them; [`strategies`] makes random complexes; [`queries`] asks a view that need
 //! not be a complex everything; [`fuzz`] has the bodies of the fuzz targets, which the tests replay.
 
-pub mod aligned;
 pub mod conformance;
 pub mod encode;
 pub mod fuzz;

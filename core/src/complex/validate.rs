@@ -19,7 +19,8 @@ impl<I: Index> Complex<'_, I> {
     /// [`FormatError::Invalid`]: the first rule that is broken, with section and element.
     pub fn validate(&self) -> Result<(), FormatError> {
         self.validate_boundary()?;
-        self.validate_flag_bits()?;
+        // Flags are zero at dimension d − 1 and in the padding.
+        check_padding(SectionKind::Flags, self.flags, self.levels().flags_end())?;
         self.validate_partial_coboundary()?;
         self.validate_tree()?;
         self.validate_columns()
@@ -59,15 +60,6 @@ impl<I: Index> Complex<'_, I> {
         row.iter().enumerate().position(|(j, upper)| {
             row.iter().take(j).zip(facet_row(upper)).any(|(lower, face)| facet_row(lower).get(j - 1) != Some(face))
         })
-    }
-
-    /// Flags are zero at dimension d − 1 and in the padding.
-    fn validate_flag_bits(&self) -> Result<(), FormatError> {
-        let bit = |bit: usize| self.flags.get(bit / 8).is_some_and(|byte| byte >> (bit % 8) & 1 == 1);
-        match (self.levels().flags_end()..self.flags.len() * 8).find(|&position| bit(position)) {
-            Some(position) => Err(invalid(SectionKind::Flags, position, Rule::FlagBits)),
-            None => Ok(()),
-        }
     }
 
     fn validate_partial_coboundary(&self) -> Result<(), FormatError> {
@@ -215,6 +207,7 @@ impl<I: Index> Complex<'_, I> {
     }
 }
 
+/// Checks that the bits from number `len` on are zero.
 fn check_padding(section: SectionKind, bytes: &[u8], len: usize) -> Result<(), FormatError> {
     let bit = |bit: usize| bytes.get(bit / 8).is_some_and(|byte| byte >> (bit % 8) & 1 == 1);
     match (len..bytes.len() * 8).find(|&position| bit(position)) {

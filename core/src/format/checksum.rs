@@ -63,11 +63,12 @@ impl ChecksumBlock<'_> {
     /// # Errors
     /// [`FormatError::Checksum`] if they differ.
     pub fn check(&self, crc: impl FnOnce(u32, &[u8]) -> u32) -> Result<(), FormatError> {
-        if crc(0, self.bytes) == self.stored {
-            return Ok(());
-        }
+        if crc(0, self.bytes) == self.stored { Ok(()) } else { Err(self.damaged()) }
+    }
+
+    fn damaged(&self) -> FormatError {
         let (offset, length) = (self.offset as u64, self.bytes.len() as u64);
-        Err(FormatError::Checksum { section: self.section, dim: self.dim, offset, length })
+        FormatError::Checksum { section: self.section, dim: self.dim, offset, length }
     }
 }
 
@@ -103,7 +104,7 @@ impl<'a> Blocks<'a> {
             stored: get_u32(bytes, stored_at, ByteOrder::Little),
         };
         if blocks.checksums.len() as u64 != expected {
-            return block.check(|_, _| !block.stored).map(|()| blocks);
+            return Err(block.damaged());
         }
         block.check(crc32)?;
         Ok(blocks)
