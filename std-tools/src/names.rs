@@ -30,16 +30,19 @@ pub enum FindError {
 /// The label of a vertex; `#` and its number if the file has none that can be read.
 #[must_use]
 pub fn vertex_label<I: Index>(complex: &Complex<'_, I>, vertex: VertexId) -> String {
-    match complex.labels().get(vertex) {
-        Some(label) => label.to_string(),
-        None => format!("#{vertex}"),
-    }
+    label_text(&complex.labels(), vertex)
+}
+
+fn label_text(labels: &Labels<'_>, vertex: VertexId) -> String {
+    labels.get(vertex).map_or_else(|| format!("#{vertex}"), |label| label.to_string())
 }
 
 /// The labels of the vertices of a simplex, by increasing vertex.
 #[must_use]
 pub fn simplex_labels<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) -> Vec<String> {
-    complex.vertices(simplex).map(|vertex| vertex_label(complex, vertex)).collect()
+    // Finding the labels walks the section table: once for them all.
+    let labels = complex.labels();
+    complex.vertices(simplex).map(|vertex| label_text(&labels, vertex)).collect()
 }
 
 /// The labels of the vertices of a simplex, separated by commas.

@@ -35,8 +35,8 @@ impl<I: Index> Iterator for TopSimplices<'_, I> {
     type Item = TopSimplex;
 
     fn next(&mut self) -> Option<TopSimplex> {
-        let complex = self.complex;
-        let id = self.ids.find(|&id| complex.is_top(id))?;
+        let Self { complex, ids, .. } = self;
+        let id = ids.find(|&id| complex.is_top(id))?;
         let is_odd = self.parity.and_then(|parity| parity.bit_at(self.found)).unwrap_or(false);
         self.found += 1;
         Some(TopSimplex { id, dim: complex.dim_of(id)?, is_odd })

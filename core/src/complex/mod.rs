@@ -177,4 +177,4 @@ impl SimplexRange {
     }
 }
 
-crate::relations::delegate_iterator!(SimplexRange, range, SimplexId::new);
+crate::relations::delegate_iterator!([] SimplexRange, range, SimplexId::new);

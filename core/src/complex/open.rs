@@ -104,7 +104,7 @@ impl<'a> Sections<'_, 'a> {
         let typed =
             core::mem::discriminant(&section.column) == core::mem::discriminant(&Column::from_indices::<I>(&[]));
         let indices = bytemuck::try_cast_slice(section.column.as_bytes()).ok().filter(|_| typed);
-        let indices = indices.ok_or(self.element_error(section))?;
+        let indices = indices.ok_or_else(|| self.element_error(section))?;
         self.check_len(section, len)?;
         Ok(indices)
     }

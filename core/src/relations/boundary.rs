@@ -5,7 +5,7 @@
 
 use heapless::Vec;
 
-use super::all_positions;
+use super::{all_positions, delegate_iterator, simplex_at};
 use crate::complex::Complex;
 use crate::id::{Dim, Index, MAX_DIM, SimplexId};
 
@@ -47,28 +47,7 @@ pub struct Facets<'a, I> {
     row: core::slice::Iter<'a, I>,
 }
 
-impl<I: Index> Iterator for Facets<'_, I> {
-    type Item = SimplexId;
-
-    #[inline]
-    fn next(&mut self) -> Option<Self::Item> {
-        self.row.next().map(|id| SimplexId::new(id.to_usize()))
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        self.row.size_hint()
-    }
-}
-
-impl<I: Index> DoubleEndedIterator for Facets<'_, I> {
-    #[inline]
-    fn next_back(&mut self) -> Option<Self::Item> {
-        self.row.next_back().map(|id| SimplexId::new(id.to_usize()))
-    }
-}
-
-impl<I: Index> ExactSizeIterator for Facets<'_, I> {}
-impl<I: Index> core::iter::FusedIterator for Facets<'_, I> {}
+delegate_iterator!([I: Index] Facets<'_, I>, row, simplex_at);
 
 /// A deleted vertex on the way from a simplex down to a face of it.
 #[derive(Clone, Copy, Debug)]

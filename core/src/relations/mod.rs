@@ -25,10 +25,10 @@ pub use vertices::Vertices;
 
 use crate::id::{Index, SimplexId};
 
-/// Iterators that hand on to an inner one of exact size, from both ends.
+/// Iterators over simplices that hand on to an inner one of exact size, from both ends.
 macro_rules! delegate_iterator {
-    ($name:ident $(<$($generic:tt),*>)?, $inner:ident, $map:expr) => {
-        impl $(<$($generic),*>)? Iterator for $name $(<$($generic),*>)? {
+    ([$($generics:tt)*] $name:ty, $inner:ident, $map:expr) => {
+        impl<$($generics)*> Iterator for $name {
             type Item = $crate::SimplexId;
 
             #[inline]
@@ -45,18 +45,24 @@ macro_rules! delegate_iterator {
             }
         }
 
-        impl $(<$($generic),*>)? DoubleEndedIterator for $name $(<$($generic),*>)? {
+        impl<$($generics)*> DoubleEndedIterator for $name {
             #[inline]
             fn next_back(&mut self) -> Option<Self::Item> {
                 self.$inner.next_back().map($map)
             }
         }
 
-        impl $(<$($generic),*>)? ExactSizeIterator for $name $(<$($generic),*>)? {}
-        impl $(<$($generic),*>)? core::iter::FusedIterator for $name $(<$($generic),*>)? {}
+        impl<$($generics)*> ExactSizeIterator for $name {}
+        impl<$($generics)*> core::iter::FusedIterator for $name {}
     };
 }
 pub(crate) use delegate_iterator;
+
+/// The simplex that an index in a buffer stands for.
+#[inline]
+pub(crate) fn simplex_at<I: Index>(index: &I) -> SimplexId {
+    SimplexId::new(index.to_usize())
+}
 
 /// Simplices that a query found, in the scratch of the query; in no particular order.
 #[derive(Clone, Debug)]
@@ -76,28 +82,7 @@ impl<'s, I: Index> Simplices<'s, I> {
     }
 }
 
-impl<I: Index> Iterator for Simplices<'_, I> {
-    type Item = SimplexId;
-
-    #[inline]
-    fn next(&mut self) -> Option<Self::Item> {
-        self.ids.next().map(|id| SimplexId::new(id.to_usize()))
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        self.ids.size_hint()
-    }
-}
-
-impl<I: Index> DoubleEndedIterator for Simplices<'_, I> {
-    #[inline]
-    fn next_back(&mut self) -> Option<Self::Item> {
-        self.ids.next_back().map(|id| SimplexId::new(id.to_usize()))
-    }
-}
-
-impl<I: Index> ExactSizeIterator for Simplices<'_, I> {}
-impl<I: Index> core::iter::FusedIterator for Simplices<'_, I> {}
+delegate_iterator!([I: Index] Simplices<'_, I>, ids, simplex_at);
 
 /// The mask without bit `position`: the positions above move down by one.
 #[inline]
