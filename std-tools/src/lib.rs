@@ -34,9 +34,13 @@
 pub mod analysis;
 pub mod build;
 pub mod export;
+pub mod frozen;
+pub mod generate;
+pub mod graph;
 pub mod incidence_graph;
 pub mod io;
 pub mod names;
+pub mod points;
 pub mod soup;
 pub mod store;
 pub mod tops;

@@ -263,6 +263,8 @@ pub struct Built {
     /// One bit for every top simplex in id order, least significant first: 1 if the input lists its vertices in an odd
     /// permutation of increasing ids.
     pub parity: Vec<u8>,
+    /// The filtration value of every simplex, at least that of its faces; no NaN, no −0.
+    pub filtration: Option<Vec<f64>>,
     /// What the input held.
     pub report: BuildReport,
 }
@@ -329,7 +331,7 @@ fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Re
         top_simplices: counts.top_simplices,
     };
     let (labels, coordinates) = order.permute(labels, coordinates);
-    Ok(Built { arrays, labels, coordinates, parity, report })
+    Ok(Built { arrays, labels, coordinates, parity, filtration: None, report })
 }
 
 /// A number that is known to fit: the caller has checked, or counts what is stored 32 bits wide already.

@@ -11,7 +11,8 @@ use sig_core::{Index, IndexWidth};
 
 use super::AlignedBytes;
 use crate::build::{Arrays, Built, SigArrays};
-use crate::soup::{Labels, Scalars};
+use crate::frozen::{FrozenTree, LastVertices};
+use crate::soup::{Coordinates, Labels, Scalars};
 
 /// How a complex is encoded. The default: the least width, tree sections, checksums, no provenance.
 #[derive(Clone, Copy, Debug)]
@@ -59,24 +60,26 @@ pub enum EncodeError {
 /// Built from the same complex with the same options it gives the same bytes, on every host.
 #[derive(Clone, Debug)]
 pub struct Encoding<'a> {
+    kind: Kind,
     width: IndexWidth,
     dims: usize,
     num_simplices: usize,
     checksums: bool,
     /// The indices in the order of the sections, with what kind of section they are.
     indices: Vec<(SectionKind, Indices<'a>)>,
-    flags: (&'a [u8], usize),
+    flags: Option<(&'a [u8], usize)>,
     last_vertices: Option<Indices<'a>>,
     labels: EncodedLabels<'a>,
     coordinates: Option<(u32, Column<'a>)>,
     parity: Option<(&'a [u8], usize)>,
+    filtration: Option<&'a [f64]>,
     provenance: Option<&'a str>,
 }
 
 /// Integers of one of the widths of a file, borrowed where the builder has them at that width.
 #[derive(Clone, Debug)]
 enum Indices<'a> {
-    Bits16(Vec<u16>),
+    Bits16(Cow<'a, [u16]>),
     Bits32(Cow<'a, [u32]>),
     Bits64(Cow<'a, [u64]>),
 }
@@ -84,7 +87,7 @@ enum Indices<'a> {
 impl<'a> Indices<'a> {
     fn from_u32(values: &'a [u32], width: IndexWidth) -> Self {
         match width {
-            IndexWidth::Bits16 => Self::Bits16(convert(values)),
+            IndexWidth::Bits16 => Self::Bits16(convert(values).into()),
             IndexWidth::Bits32 => Self::Bits32(values.into()),
             IndexWidth::Bits64 => Self::Bits64(convert(values).into()),
         }
@@ -92,7 +95,7 @@ impl<'a> Indices<'a> {
 
     fn from_u64(values: &'a [u64], width: IndexWidth) -> Self {
         match width {
-            IndexWidth::Bits16 => Self::Bits16(convert(values)),
+            IndexWidth::Bits16 => Self::Bits16(convert(values).into()),
             IndexWidth::Bits32 => Self::Bits32(convert(values).into()),
             IndexWidth::Bits64 => Self::Bits64(values.into()),
         }
@@ -156,17 +159,32 @@ impl<'a> Encoding<'a> {
             Arrays::Wide(arrays) => Self::of_arrays(arrays, options, Indices::from_u64),
         }?;
         encoding.labels = EncodedLabels::new(&built.labels);
-        encoding.coordinates = built.coordinates.as_ref().map(|coordinates| {
-            let column = match &coordinates.values {
-                Scalars::F32(values) => Column::F32(values),
-                Scalars::F64(values) => Column::F64(values),
-            };
-            (u32::try_from(coordinates.dim).unwrap_or(u32::MAX), column)
-        });
+        encoding.coordinates = built.coordinates.as_ref().map(coordinate_column);
+        encoding.filtration = built.filtration.as_deref();
         let tops = &built.report.top_simplices;
         let num_tops = tops.iter().sum();
         // A vertex alone has no orientation.
         encoding.parity = tops.iter().skip(1).any(|&count| count > 0).then_some((&built.parity, num_tops));
+        Ok(encoding)
+    }
+
+    /// Lays out a simplex tree as a file of kind *tree*: labels and child offsets, no boundary, no co-boundary. Cost: as
+    /// [`new`](Self::new). [`EncodeOptions::tree`] has no meaning here.
+    ///
+    /// # Errors
+    /// [`EncodeError::TooNarrow`] if a width is asked for that does not hold the complex.
+    pub fn of_tree(tree: &'a FrozenTree, options: &EncodeOptions<'a>) -> Result<Self, EncodeError> {
+        let largest = tree.num_simplices.saturating_sub(1) as u64;
+        let mut encoding = Self::of_levels(Kind::Tree, &tree.first, tree.num_simplices, largest, options)?;
+        let child_offsets = Indices::from_u32(&tree.child_offsets, encoding.width);
+        encoding.indices.push((SectionKind::ChildOffsets, child_offsets));
+        encoding.last_vertices = Some(match &tree.last_vertices {
+            LastVertices::Bits16(vertices) => Indices::Bits16(vertices.into()),
+            LastVertices::Bits32(vertices) => Indices::from_u32(vertices, width_of_vertices(tree.num_vertices())),
+        });
+        encoding.labels = EncodedLabels::new(&tree.labels);
+        encoding.coordinates = tree.coordinates.as_ref().map(coordinate_column);
+        encoding.filtration = tree.filtration.as_deref();
         Ok(encoding)
     }
 
@@ -175,40 +193,54 @@ impl<'a> Encoding<'a> {
         options: &EncodeOptions<'a>,
         at_width: fn(&'a [I], IndexWidth) -> Indices<'a>,
     ) -> Result<Self, EncodeError> {
-        let largest = largest(arrays);
+        let mut encoding = Self::of_levels(Kind::Sig, &arrays.first, arrays.num_simplices, largest(arrays), options)?;
+        let width = encoding.width;
+        encoding.indices.extend([
+            (SectionKind::Boundary, at_width(&arrays.boundary, width)),
+            (SectionKind::Pointers, at_width(&arrays.pointers, width)),
+            (SectionKind::Lists, at_width(&arrays.lists, width)),
+        ]);
+        encoding.flags = Some((&arrays.flags, arrays.pointers.len()));
+        if options.tree {
+            encoding.indices.push((SectionKind::ChildOffsets, at_width(&arrays.child_offsets, width)));
+            let least = width_of_vertices(arrays.ids(0).len());
+            encoding.last_vertices = Some(Indices::from_u32(&arrays.last_vertices, least));
+        }
+        Ok(encoding)
+    }
+
+    /// The lookup table of a complex with numbers up to `largest`, and nothing else yet.
+    fn of_levels(
+        kind: Kind,
+        first: &[usize],
+        num_simplices: usize,
+        largest: u64,
+        options: &EncodeOptions<'a>,
+    ) -> Result<Self, EncodeError> {
         let least = IndexWidth::least_for(largest).unwrap_or(IndexWidth::Bits64);
         let width = options.width.unwrap_or(least);
         if width < least {
             return Err(EncodeError::TooNarrow { width, largest, least });
         }
-        let first = arrays.first.iter().map(|&first| first as u64).collect::<Vec<_>>();
+        let first = first.iter().map(|&first| first as u64).collect::<Vec<_>>();
         let lookup = match width {
-            IndexWidth::Bits16 => Indices::Bits16(convert(&first)),
+            IndexWidth::Bits16 => Indices::Bits16(convert(&first).into()),
             IndexWidth::Bits32 => Indices::Bits32(convert(&first).into()),
             IndexWidth::Bits64 => Indices::Bits64(first.into()),
         };
-        let mut indices = vec![
-            (SectionKind::Lookup, lookup),
-            (SectionKind::Boundary, at_width(&arrays.boundary, width)),
-            (SectionKind::Pointers, at_width(&arrays.pointers, width)),
-            (SectionKind::Lists, at_width(&arrays.lists, width)),
-        ];
-        let last_vertices = options.tree.then(|| {
-            indices.push((SectionKind::ChildOffsets, at_width(&arrays.child_offsets, width)));
-            let least = IndexWidth::least_for(arrays.ids(0).len() as u64).unwrap_or(IndexWidth::Bits64);
-            Indices::from_u32(&arrays.last_vertices, least)
-        });
         Ok(Self {
+            kind,
             width,
-            dims: arrays.first.len(),
-            num_simplices: arrays.num_simplices,
+            dims: lookup.column().len(),
+            num_simplices,
             checksums: options.checksums,
-            indices,
-            flags: (&arrays.flags, arrays.pointers.len()),
-            last_vertices,
+            indices: vec![(SectionKind::Lookup, lookup)],
+            flags: None,
+            last_vertices: None,
             labels: EncodedLabels::Numbered,
             coordinates: None,
             parity: None,
+            filtration: None,
             provenance: options.provenance,
         })
     }
@@ -224,7 +256,9 @@ impl<'a> Encoding<'a> {
         let mut sections: Vec<_> =
             self.indices.iter().map(|(kind, indices)| Section::new(*kind, indices.column())).collect();
         let mut add = |kind, column| sections.push(Section::new(kind, column));
-        add(SectionKind::Flags, bits(self.flags));
+        if let Some(flags) = self.flags {
+            add(SectionKind::Flags, bits(flags));
+        }
         if let Some(last_vertices) = &self.last_vertices {
             add(SectionKind::LastVertices, last_vertices.column());
         }
@@ -239,6 +273,9 @@ impl<'a> Encoding<'a> {
         if let Some(parity) = self.parity {
             add(SectionKind::Parity, bits(parity));
         }
+        if let Some(filtration) = self.filtration {
+            add(SectionKind::Filtration, Column::F64(filtration));
+        }
         if let Some(provenance) = self.provenance {
             add(SectionKind::Provenance, Column::U8(provenance.as_bytes()));
         }
@@ -251,7 +288,7 @@ impl<'a> Encoding<'a> {
 
     fn with_encoder<T>(&self, use_encoder: impl FnOnce(&Encoder<'_>) -> T) -> Result<T, EncodeError> {
         let sections = self.sections();
-        let encoder = Encoder::new(Kind::Sig, self.width, self.dims, self.num_simplices as u64, &sections)?;
+        let encoder = Encoder::new(self.kind, self.width, self.dims, self.num_simplices as u64, &sections)?;
         let encoder = if self.checksums { encoder.with_checksums()? } else { encoder };
         Ok(use_encoder(&encoder))
     }
@@ -294,6 +331,20 @@ impl<'a> Encoding<'a> {
             Ok(bytes)
         })?
     }
+}
+
+/// The coordinates as a column, and how many a vertex has.
+fn coordinate_column(coordinates: &Coordinates) -> (u32, Column<'_>) {
+    let column = match &coordinates.values {
+        Scalars::F32(values) => Column::F32(values),
+        Scalars::F64(values) => Column::F64(values),
+    };
+    (u32::try_from(coordinates.dim).unwrap_or(u32::MAX), column)
+}
+
+/// The width of the ids of `count` vertices where they are labels of tree nodes.
+fn width_of_vertices(count: usize) -> IndexWidth {
+    IndexWidth::least_for(count as u64).unwrap_or(IndexWidth::Bits64)
 }
 
 /// The largest id or list offset.
