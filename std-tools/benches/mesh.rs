@@ -14,8 +14,8 @@ use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
-use std::time::Instant;
 
+use common::{Timing, peak_memory, timed};
 use sig_core::format::{Column, SectionKind};
 use sig_core::{Complex, with_complex};
 use sig_tools::build::{BuildOptions, Built, build};
@@ -23,10 +23,12 @@ use sig_tools::soup::{Labels, Soup};
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Mapped, OwnedScratch};
 
+mod common;
+
 const ROUNDS: usize = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments: Vec<String> = common::arguments();
     if let [mode, mesh] = arguments.as_slice()
         && mode == "--peak"
     {
@@ -54,32 +56,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("  {megabytes:9.2} MB  {}", Timing::of(samples?).show(1e6, "µs"));
     }
     Ok(())
-}
-
-/// Median, least and most of some timings, in seconds.
-struct Timing {
-    median: f64,
-    least: f64,
-    most: f64,
-}
-
-impl Timing {
-    fn of(mut samples: Vec<f64>) -> Self {
-        samples.sort_by(f64::total_cmp);
-        let at = |index: usize| samples.get(index).copied().unwrap_or(f64::NAN);
-        Self { median: at(samples.len() / 2), least: at(0), most: at(samples.len().saturating_sub(1)) }
-    }
-
-    fn show(&self, factor: f64, unit: &str) -> String {
-        let Self { median, least, most } = self;
-        format!("{:.1} {unit} ({:.1}, {:.1})", median * factor, least * factor, most * factor)
-    }
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = work();
-    (start.elapsed().as_secs_f64(), result)
 }
 
 /// The Freudenthal triangulation of a grid of side³ vertices: six tetrahedra a cube, one for each order of the axes.
@@ -252,9 +228,7 @@ fn peak_of_child(mesh: &str) -> Result<(), Box<dyn Error>> {
 fn peak(mesh: &str) -> Result<(), Box<dyn Error>> {
     let built = build(soup_of(mesh)?, &BuildOptions::default())?;
     let bytes = Encoding::new(&built, &EncodeOptions::default())?.file_bytes()?;
-    let status = std::fs::read_to_string("/proc/self/status")?;
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).ok_or("no VmHWM")?;
-    let peak: f64 = peak.trim().trim_end_matches(" kB").parse::<f64>()? * 1024.0;
+    let peak = peak_memory().ok_or("the system does not tell")?;
     println!(
         "  peak memory of a build, input included: {:.0} MB, {:.2} times the file",
         peak / 1e6,

@@ -1,0 +1,75 @@
+//! What the benchmarks share: timings of several rounds, the peers' programs, and charts.
+//!
+//! Machines are noisy, so whatever is compared is measured in turn, several rounds, and the medians are printed with
+//! their spread. Read the ratios.
+#![allow(dead_code, reason = "each benchmark uses a part of it")]
+
+pub(crate) mod chart;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::process::Command;
+use std::time::Instant;
+
+/// The arguments of a benchmark: without the one that cargo adds.
+pub(crate) fn arguments() -> Vec<String> {
+    std::env::args().skip(1).filter(|argument| argument != "--bench").collect()
+}
+
+/// Median, least and most of some samples: seconds, as a rule.
+#[derive(Clone, Copy)]
+pub(crate) struct Timing {
+    pub(crate) median: f64,
+    pub(crate) least: f64,
+    pub(crate) most: f64,
+}
+
+impl Timing {
+    pub(crate) fn of(mut samples: Vec<f64>) -> Self {
+        samples.sort_by(f64::total_cmp);
+        let at = |index: usize| samples.get(index).copied().unwrap_or(f64::NAN);
+        Self { median: at(samples.len() / 2), least: at(0), most: at(samples.len().saturating_sub(1)) }
+    }
+
+    /// The median with the spread, after multiplication by `factor`.
+    pub(crate) fn show(&self, factor: f64, unit: &str) -> String {
+        let Self { median, least, most } = self;
+        format!("{:.1} {unit} ({:.1}, {:.1})", median * factor, least * factor, most * factor)
+    }
+}
+
+/// The seconds that some work takes, and its result.
+pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let result = work();
+    (start.elapsed().as_secs_f64(), result)
+}
+
+/// Runs some work on one thread.
+pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Box<dyn Error>> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(work))
+}
+
+/// What a peer's program prints.
+pub(crate) fn run(program: &OsStr, arguments: &[&OsStr]) -> Result<String, Box<dyn Error>> {
+    let output = Command::new(program).args(arguments).output()?;
+    if !output.status.success() {
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        return Err(format!("{} failed: {message}", program.display()).into());
+    }
+    Ok(String::from_utf8(output.stdout)?)
+}
+
+/// The number that follows a key in what a peer prints: `figure("s=1.5 n=3", "n=")` is 3.
+pub(crate) fn figure(text: &str, key: &str) -> Result<f64, Box<dyn Error>> {
+    let rest = text.split(key).nth(1).ok_or_else(|| format!("no figure {key} of the peer in:\n{text}"))?;
+    let end = rest.find(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c))).unwrap_or(rest.len());
+    Ok(rest[..end].parse()?)
+}
+
+/// The largest resident set of this process so far, in bytes; `None` where the system does not tell.
+pub(crate) fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().trim_end_matches(" kB").parse::<f64>().ok()? * 1024.0)
+}
