@@ -1,7 +1,7 @@
 //! Carrying everything over to the new ids, in one linear pass over each array, with what the edits recomputed put in.
 
 use rayon::prelude::*;
-use sig_core::Index;
+use sig_core::{Dim, Index};
 
 use super::edit::{Before, Edit};
 use super::renumber::{Renumbering, row_starts};
@@ -84,24 +84,40 @@ fn relations<I: Index>(
 where
     Arrays: From<SigArrays<I>>,
 {
+    // In a smaller dimension other relations are flagged, so that each has to be looked at.
+    let same_dim = renumbering.first.len() == renumbering.old_first.len();
     pack(arrays, |ids, part| {
         let start = renumbering.changed.partition_point(|changed| changed.id < ids.start);
         let mut changed = renumbering.changed[start..].iter().peekable();
         let start = renumbering.runs.partition_point(|run| run.to + run.len <= ids.start);
         let mut runs = renumbering.runs[start..].iter().peekable();
+        let mut id = ids.start;
         let mut entries = Vec::new();
-        for id in ids {
-            entries.clear();
+        while id < ids.end {
             if let Some(changed) = changed.next_if(|changed| changed.id == id) {
                 let local_ids = &renumbering.local_ids[changed.edit];
                 let list = list(&edits[changed.edit].local, changed.local);
+                entries.clear();
                 entries.extend(list.iter().map(|top| index::<I>(local_ids[top.to_usize()])));
-            } else {
-                while runs.next_if(|run| run.to + run.len <= id).is_some() {}
-                let old = runs.peek().map_or(id, |run| id - run.to + run.from);
-                entries.extend(list(before, old).iter().map(|top| renumbering.new_ids[top.to_usize()]));
+                part.push(&entries);
+                id += 1;
+                continue;
             }
-            part.push(&entries);
+            // What is no survivor has changed, so there is a run.
+            while runs.next_if(|run| run.to + run.len <= id).is_some() {}
+            let Some(run) = runs.peek() else { break };
+            let end = changed.peek().map_or(ids.end, |changed| changed.id.min(ids.end)).min(run.to + run.len);
+            let old = id - run.to + run.from..end - run.to + run.from;
+            if same_dim {
+                part.push_renumbered(before, old, &renumbering.new_ids);
+            } else {
+                for old in old {
+                    entries.clear();
+                    entries.extend(list(before, old).iter().map(|top| renumbering.new_ids[top.to_usize()]));
+                    part.push(&entries);
+                }
+            }
+            id = end;
         }
     })
 }
@@ -122,8 +138,13 @@ pub(super) fn parity<I: Index>(
     let fresh = fresh_tops(edits, renumbering);
     let mut fresh = fresh.iter().copied().peekable();
     let mut changed = renumbering.changed.iter().map(|changed| changed.id).peekable();
-    let mut tops =
-        Tops { first: &renumbering.first, bits: Vec::new(), count: 0, counts: vec![0; renumbering.first.len()] };
+    let mut tops = Tops {
+        first: &renumbering.first,
+        dim: 0,
+        bits: Vec::new(),
+        count: 0,
+        counts: vec![0; renumbering.first.len()],
+    };
     for (id, is_odd) in survivors {
         while let Some((id, is_odd)) = fresh.next_if(|&(fresh, _)| fresh <= id) {
             tops.push(id, is_odd);
@@ -153,6 +174,7 @@ fn fresh_tops<I: Index>(edits: &[Edit], renumbering: &Renumbering<I>) -> Vec<(us
 /// Top simplices, as they are met.
 struct Tops<'a> {
     first: &'a [usize],
+    dim: Dim,
     bits: Vec<u8>,
     count: usize,
     counts: Vec<usize>,
@@ -160,14 +182,18 @@ struct Tops<'a> {
 
 impl Tops<'_> {
     fn push(&mut self, id: usize, is_odd: bool) {
-        if self.count % 8 == 0 {
+        if self.count.is_multiple_of(8) {
             self.bits.push(0);
         }
         if let Some(byte) = self.bits.last_mut() {
             *byte |= u8::from(is_odd) << (self.count % 8);
         }
         self.count += 1;
-        self.counts[self.first.partition_point(|&first| first <= id) - 1] += 1;
+        // Ids increase.
+        while self.first.get(self.dim + 1).is_some_and(|&first| first <= id) {
+            self.dim += 1;
+        }
+        self.counts[self.dim] += 1;
     }
 }
 
