@@ -3,8 +3,9 @@
 use proptest::prelude::*;
 use sig_tools::build::Built;
 use sig_tools::contract::{ContractError, ContractReport, contract};
+use sig_tools::soup::{Labels, Soup};
 
-use crate::model::{Model, edge};
+use crate::model::{Model, edge, sorted};
 use crate::samples::{kuhn_grid, simplices};
 
 /// All but what the report says of the input.
@@ -106,6 +107,27 @@ fn independent_edges_share_a_pass() {
     }
     assert_eq!(together.arrays, apart.arrays);
     assert_eq!((together.labels, together.parity), (apart.labels, apart.parity));
+}
+
+/// A grid so large that its lists are written in several pieces, against a rebuild from the images of the tetrahedra.
+#[test]
+fn a_large_grid_equals_a_rebuild() {
+    let soup = kuhn_grid(14, 14, 14);
+    // Removed: 2, 1404 and 2743, each a neighbour of the vertex kept.
+    let pairs = [(3, 2), (1403, 1404), (2742, 2743)];
+    let mut built = sig_tools::build::build(soup.clone(), &sig_tools::build::BuildOptions::default()).expect("good");
+    let report = contract(&mut built, &pairs.map(|(kept, removed)| edge(kept, removed))).expect("edges");
+    assert_eq!((report.contracted, report.passes), (3, 1));
+    let image = |vertex: u32| {
+        let image = pairs.iter().find(|&&(_, removed)| removed == vertex).map_or(vertex, |&(kept, _)| kept);
+        image - pairs.iter().filter(|&&(_, removed)| removed < image).count() as u32
+    };
+    let mut images = Soup::new(Labels::Numbered(14 * 14 * 14 - 3), true);
+    for tetrahedron in soup.of_dim(3) {
+        images.push(&sorted(&tetrahedron.iter().map(|&vertex| image(vertex)).collect::<Vec<_>>()));
+    }
+    let expected = sig_tools::build::build(images, &sig_tools::build::BuildOptions::default()).expect("good");
+    assert_eq!(built.arrays, expected.arrays);
 }
 
 /// The part that is found anew is the same in a larger grid.
