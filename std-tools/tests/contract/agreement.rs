@@ -1,7 +1,7 @@
 //! Contraction equals a rebuild, in every array.
 
 use proptest::prelude::*;
-use sig_tools::build::Built;
+use sig_tools::build::{Arrays, Built};
 use sig_tools::contract::{ContractError, ContractReport, contract};
 use sig_tools::soup::{Labels, Soup};
 
@@ -19,6 +19,9 @@ fn check(contracted: &Built, expected: &Built) {
 }
 
 proptest! {
+    // Of each complex some hundred edges.
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
     #[test]
     fn every_edge_of_a_complex(simplices in simplices(), seed in any::<u32>()) {
         let model = Model::new(14, &simplices, seed);
@@ -32,7 +35,9 @@ proptest! {
             prop_assert_eq!(built.report.conflicting, expected.built().report.conflicting);
         }
     }
+}
 
+proptest! {
     /// One edge after the other, until none is left.
     #[test]
     fn until_no_edge_is_left(simplices in simplices(), seed in any::<u32>(), picks in prop::collection::vec(any::<prop::sample::Index>(), 14)) {
@@ -60,7 +65,10 @@ proptest! {
         let mut built = model.built();
         let listed: Vec<(u32, u32)> = picks.iter().map(|pick| edges[pick.index(edges.len())]).collect();
         let list: Vec<_> = listed.iter().map(|&(kept, removed)| edge(kept, removed)).collect();
+        let mut wide = Built { arrays: Arrays::Wide(built.arrays.clone().into_wide()), ..built.clone() };
         let report = contract(&mut built, &list).expect("edges stay edges or become vertices");
+        prop_assert_eq!(contract(&mut wide, &list), Ok(report));
+        prop_assert_eq!(wide.arrays, Arrays::Wide(built.arrays.clone().into_wide()));
         let mut stands_for: Vec<u32> = (0..14).collect();
         for (kept, removed) in listed {
             let (kept, removed) = (stands_for[kept as usize], stands_for[removed as usize]);
