@@ -9,6 +9,7 @@
 //! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
 //! | arrays in canonical order | [`mod@build`] | [`build::build`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
+//! | contract edges of what is built | [`mod@contract`] | [`contract::contract`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | what `sig info` says of a complex | [`analysis`] | [`analysis::Analysis`] |
 //! | simplices by the input's labels | [`names`], [`tops`] | [`names::find_simplex`] |
@@ -33,6 +34,7 @@
 
 pub mod analysis;
 pub mod build;
+pub mod contract;
 pub mod export;
 pub mod frozen;
 pub mod generate;

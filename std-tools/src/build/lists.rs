@@ -77,6 +77,32 @@ impl<I: Index> Part<I> {
         self.next += 1;
     }
 
+    /// Writes the relations of the next simplices as those of `range` in the arrays `before`, of a complex of the same
+    /// dimension, with every id replaced by its entry in `new_ids`. Cheaper than one [`push`](Self::push) for each, as
+    /// nothing is looked at but the flags.
+    pub(crate) fn push_renumbered(&mut self, before: &SigArrays<I>, range: Range<usize>, new_ids: &[I]) {
+        let base = self.lists.len();
+        // Where the lists of the range start in `before`, and where the last of them does.
+        let mut lists = None;
+        let start = self.pointers.len();
+        for (number, (id, pointer)) in (start..).zip(range.clone().zip(&before.pointers[range])) {
+            let pointer = pointer.to_usize();
+            if before.flags[id / 8] >> (id % 8) & 1 == 1 {
+                self.flags[number / 8] |= 1 << (number % 8);
+                self.pointers.push(new_ids[pointer].to_usize());
+            } else {
+                let (first, _) = lists.unwrap_or((pointer, pointer));
+                lists = Some((first, pointer));
+                self.pointers.push(base + pointer - first);
+            }
+        }
+        self.next += self.pointers.len() - start;
+        let Some((first, last)) = lists else { return };
+        let len = before.lists[last..].iter().position(|&entry| entry == I::STOP).map_or(0, |len| len + 1);
+        let entries = before.lists[first..last + len].iter();
+        self.lists.extend(entries.map(|&top| if top == I::STOP { top } else { new_ids[top.to_usize()] }));
+    }
+
     /// Copies the part to where it belongs, if the lists before it take `start` entries.
     fn copy_to<J: Index>(&self, start: usize, pointers: &mut [J], lists: &mut [J]) {
         for (number, (pointer, &value)) in pointers.iter_mut().zip(&self.pointers).enumerate() {

@@ -29,6 +29,7 @@ use crate::soup::{Coordinates, Labels, Soup};
 use limits::{Limit, Meter, Reservation};
 pub(crate) use lists::pack;
 use order::number_vertices;
+pub(crate) use order::numbered_if_possible;
 pub use report::BuildReport;
 
 /// How the vertices are numbered, and with them all simplices.

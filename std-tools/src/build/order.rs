@@ -65,7 +65,7 @@ fn permute_rows<T: Copy>(rows: &[T], width: usize, order: &[u32]) -> Vec<T> {
 }
 
 /// Labels that are their own positions take no room.
-fn numbered_if_possible(labels: Labels) -> Labels {
+pub(crate) fn numbered_if_possible(labels: Labels) -> Labels {
     match labels {
         Labels::Integers(labels) if labels.iter().zip(0..).all(|(&label, id)| label == id) => {
             Labels::Numbered(labels.len())
