@@ -9,7 +9,7 @@
 
 use sig_core::{Dim, Index};
 
-use crate::build::index;
+use crate::build::{index, seek};
 use crate::graph::Graph;
 
 /// The most candidates that get letters.
@@ -245,21 +245,9 @@ pub(super) fn for_each_common(a: &[u32], b: &[u32], mut visit: impl FnMut(usize,
     let (short, long) = if a.len() <= b.len() { (a, b) } else { (b, a) };
     let mut in_long = 0;
     for (in_short, &vertex) in short.iter().enumerate() {
-        in_long += seek(&long[in_long..], vertex);
+        in_long += seek(&long[in_long..], &vertex);
         if long.get(in_long) == Some(&vertex) {
             if a.len() <= b.len() { visit(in_short, in_long) } else { visit(in_long, in_short) }
         }
     }
-}
-
-/// The position of the first entry of an increasing list that is not less than `vertex`, by doubling steps.
-fn seek(list: &[u32], vertex: u32) -> usize {
-    let mut step = 1;
-    let mut start = 0;
-    while list.get(start + step - 1).is_some_and(|&entry| entry < vertex) {
-        start += step;
-        step *= 2;
-    }
-    let end = list.len().min(start + step - 1);
-    start + list[start..end].partition_point(|&entry| entry < vertex)
 }

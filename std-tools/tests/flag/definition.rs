@@ -112,7 +112,7 @@ proptest! {
 /// Random graphs with more neighbours than a row has bits, against plain recursion over sorted sets.
 #[test]
 fn vertices_with_many_neighbours() {
-    for (num_vertices, percent, max_dim) in [(70, 95, 3), (150, 60, 4), (400, 30, 3), (1500, 4, 9)] {
+    for (num_vertices, percent, max_dim) in [(70, 95, 2), (150, 60, 3), (400, 25, 3), (1500, 6, 4)] {
         let mut random = sig_tools::generate::SplitMix64::new(num_vertices);
         let mut edges = Vec::new();
         let mut weights = Vec::new();
