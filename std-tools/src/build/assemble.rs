@@ -1,17 +1,13 @@
 //! Lays the faces that the tasks found end to end: last vertices, child offsets, boundary.
 //!
-//! Only the facets without the least vertex are not known yet. Facet 0 of a child with last vertex y is the child y of
-//! facet 0 of its parent, so they follow level by level from the child offsets.
+//! Only the facets without the least vertex are not known yet; they follow from the child offsets ([`facets`]).
 
 use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
 use crate::build::levels::Chunks;
 use crate::build::local::Level;
-use crate::build::{Meter, Phase, SigArrays, index};
-
-/// Parents whose children one task handles.
-const PARENTS: usize = 1 << 13;
+use crate::build::{Meter, Phase, SigArrays, facets, index};
 
 /// The arrays of the faces, without co-boundary relations, and how the simplices of each dimension are listed (one byte
 /// each; nothing for a dimension of which none is).
@@ -36,10 +32,13 @@ pub(super) fn assemble<I: Index>(chunks: Chunks, meter: &Meter<'_>) -> (SigArray
     };
     let listed = lay_out(chunks, &counts, &mut arrays);
     let stage = meter.stage(Phase::Boundary, dim.saturating_sub(1));
+    let last_vertices = std::mem::take(&mut arrays.last_vertices);
     for p in 2..=dim {
-        find_first_facets(&mut arrays, p);
+        // The tasks found all faces, so that nothing is missing.
+        let _ = facets::fill(&mut arrays, &last_vertices, p, 1, &[]);
         stage.add(1);
     }
+    arrays.last_vertices = last_vertices;
     (arrays, listed)
 }
 
@@ -138,49 +137,4 @@ impl<I: Index> Part<'_, I> {
             }
         }
     }
-}
-
-/// Fills in facet 0 of the simplices of dimension `dim` > 1.
-fn find_first_facets<I: Index>(arrays: &mut SigArrays<I>, dim: Dim) {
-    let (parents, children) = (arrays.ids(dim - 1), arrays.ids(dim));
-    let below: usize = (1..dim - 1).map(|p| arrays.ids(p).len() * (p + 1)).sum();
-    let (lower, boundary) = arrays.boundary.split_at_mut(below + parents.len() * dim);
-    let parent_rows = &lower[below..];
-    let mut boundary = &mut boundary[..children.len() * (dim + 1)];
-    let mut parts = Vec::new();
-    for start in parents.clone().step_by(PARENTS) {
-        let family = start..parents.end.min(start + PARENTS);
-        let count = arrays.child_offsets[family.end].to_usize() - arrays.child_offsets[family.start].to_usize();
-        parts.push((family, boundary.split_off_mut(..count * (dim + 1)).unwrap_or_default()));
-    }
-    let children_of = |id: usize| arrays.child_offsets[id].to_usize()..arrays.child_offsets[id + 1].to_usize();
-    let last_vertices = &arrays.last_vertices;
-    parts.into_par_iter().for_each(|(family, rows)| {
-        let mut rows = rows.chunks_exact_mut(dim + 1);
-        for parent in family {
-            let labels = &last_vertices[children_of(parent)];
-            if labels.is_empty() {
-                continue;
-            }
-            let facet = parent_rows[(parent - parents.start) * dim].to_usize();
-            let mut candidates = children_of(facet);
-            // All labels are among the candidates' labels, and both increase.
-            for (&label, row) in labels.iter().zip(&mut rows) {
-                candidates.start += seek(&last_vertices[candidates.clone()], label);
-                row[0] = index(candidates.start);
-            }
-        }
-    });
-}
-
-/// The position of `label` in increasing `labels`, by doubling steps: usually it is near the start.
-fn seek(labels: &[u32], label: u32) -> usize {
-    let mut step = 1;
-    let mut start = 0;
-    while labels.get(start + step - 1).is_some_and(|&candidate| candidate < label) {
-        start += step;
-        step *= 2;
-    }
-    let end = labels.len().min(start + step - 1);
-    start + labels[start..end].partition_point(|&candidate| candidate < label)
 }

@@ -30,6 +30,17 @@ impl Limit {
         Ok(Self { limit, taken: AtomicU64::new(0) })
     }
 
+    /// Refuses a complex with so many simplices of each dimension if the options or the memory leave less room.
+    pub(super) fn check(counts: &[usize], options: &BuildOptions<'_>) -> Result<(), BuildError> {
+        let at_least: u64 = counts.iter().map(|&count| count as u64).sum();
+        let bytes: u64 = (0..).zip(counts).map(|(dim, &count)| count as u64 * 4 * (dim + 3)).sum();
+        let room = options.max_bytes.or_else(available_memory).unwrap_or(u64::MAX);
+        // At the same mean size.
+        let fit = u128::from(at_least) * u128::from(room) / u128::from(bytes.max(1));
+        let limit = options.max_simplices.unwrap_or(u64::MAX).min(u64::try_from(fit).unwrap_or(u64::MAX));
+        if at_least > limit { Err(BuildError::TooLarge { at_least, limit }) } else { Ok(()) }
+    }
+
     /// Takes room for `count` simplices.
     pub(super) fn reserve(&self, count: usize) -> Result<(), BuildError> {
         let at_least = self.taken.fetch_add(count as u64, Ordering::Relaxed).saturating_add(count as u64);
@@ -83,7 +94,7 @@ fn bytes_per_face(dim: Dim, count: u64) -> u64 {
 }
 
 /// The memory that the system says is available; `None` if it says nothing.
-fn available_memory() -> Option<u64> {
+pub(crate) fn available_memory() -> Option<u64> {
     let info = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = info.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)

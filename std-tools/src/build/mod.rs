@@ -7,11 +7,15 @@
 //!    them end to end: from here on a simplex is its number, and its facets are known;
 //! 3. `clusters` finds the partial co-boundary relations C\*, and `lists` writes them as pointers, lists and flags.
 //!
+//! A [simplex tree](crate::frozen::FrozenTree) skips the first two steps: `complete` reads the facets off it (`facets`).
+//!
 //! The result depends on the set of simplices, the labels and the options only: not on the order of the input, nor on
 //! the number of threads. Work runs in rayon's current pool.
 
 mod assemble;
 mod clusters;
+mod complete;
+mod facets;
 mod levels;
 mod limits;
 mod lists;
@@ -26,7 +30,10 @@ use sig_core::{Dim, Index};
 
 use crate::soup::{Coordinates, Labels, Soup};
 
+pub(crate) use limits::available_memory;
 use limits::{Limit, Meter, Reservation};
+pub use complete::complete;
+pub(crate) use facets::seek;
 pub(crate) use lists::pack;
 use order::number_vertices;
 pub(crate) use order::numbered_if_possible;
@@ -140,6 +147,9 @@ pub enum BuildError {
     /// Vertex numbers are 32-bit, and the largest is reserved.
     #[error("{0} vertices are more than 4294967294")]
     TooManyVertices(usize),
+    /// The arrays are not a simplex tree in level order, or a simplex lacks a facet.
+    #[error("the arrays are not a simplex tree: simplex {0} is out of place, or lacks a facet")]
+    MalformedTree(usize),
     /// The complex is larger than the limit, or than memory.
     #[error("the complex has at least {at_least} simplices, and there is room for {limit}")]
     TooLarge {
@@ -262,8 +272,8 @@ pub struct Built {
     /// The coordinates of the vertices, by vertex id.
     pub coordinates: Option<Coordinates>,
     /// One bit for every top simplex in id order, least significant first: 1 if the input lists its vertices in an odd
-    /// permutation of increasing ids.
-    pub parity: Vec<u8>,
+    /// permutation of increasing ids. None if the vertices came in no order, from a simplex tree.
+    pub parity: Option<Vec<u8>>,
     /// The filtration value of every simplex, at least that of its faces; no NaN, no −0.
     pub filtration: Option<Vec<f64>>,
     /// What the input held.
@@ -332,7 +342,7 @@ fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Re
         top_simplices: counts.top_simplices,
     };
     let (labels, coordinates) = order.permute(labels, coordinates);
-    Ok(Built { arrays, labels, coordinates, parity, filtration: None, report })
+    Ok(Built { arrays, labels, coordinates, parity: Some(parity), filtration: None, report })
 }
 
 /// A number that is known to fit: the caller has checked, or counts what is stored 32 bits wide already.
@@ -359,7 +369,7 @@ pub(crate) fn ids(first: &[usize], num_simplices: usize, dim: Dim) -> std::ops::
 
 /// Adds the partial co-boundary relations to the arrays of the faces, and reads off what is known of the listed
 /// simplices (`listed`: one byte a simplex, see [`local`]).
-fn finish<I: Index>(arrays: SigArrays<I>, listed: &[Vec<u8>], meter: &Meter<'_>) -> (Arrays, Vec<u8>, report::Counts)
+fn finish<I: clusters::Cell>(arrays: SigArrays<I>, listed: &[Vec<u8>], meter: &Meter<'_>) -> (Arrays, Vec<u8>, report::Counts)
 where
     Arrays: From<SigArrays<I>>,
 {

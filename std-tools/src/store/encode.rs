@@ -164,7 +164,8 @@ impl<'a> Encoding<'a> {
         let tops = &built.report.top_simplices;
         let num_tops = tops.iter().sum();
         // A vertex alone has no orientation.
-        encoding.parity = tops.iter().skip(1).any(|&count| count > 0).then_some((&built.parity, num_tops));
+        let is_oriented = tops.iter().skip(1).any(|&count| count > 0);
+        encoding.parity = built.parity.as_deref().filter(|_| is_oriented).map(|parity| (parity, num_tops));
         Ok(encoding)
     }
 
