@@ -79,8 +79,11 @@ impl SimplexTree {
     pub fn neighbours(&self, vertex: u32) -> Vec<u32> {
         let mut lower: Vec<u32> = match &self.lists {
             Some(lists) => lists.sets(vertex, 1).iter().map(|&set| self.arena.parent(set).1).collect(),
-            None => self.lower_vertices(vertex).filter(|&(_, set)| self.arena.search(set, vertex).is_ok())
-                .map(|(lower, _)| lower).collect(),
+            None => self
+                .lower_vertices(vertex)
+                .filter(|&(_, set)| self.arena.search(set, vertex).is_ok())
+                .map(|(lower, _)| lower)
+                .collect(),
         };
         lower.sort_unstable();
         lower.extend_from_slice(self.arena.labels(self.child_at(Place::top(vertex))));

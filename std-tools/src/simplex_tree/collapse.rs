@@ -114,9 +114,8 @@ impl SimplexTree {
         let value = |id: usize| frozen.filtration.as_ref().map_or(0.0, |values| values[id]);
         let children = |id: usize, _: Dim, members: &mut Vec<Member<usize>>| {
             let children = frozen.children(id).filter(|&child| present[child]);
-            members.extend(
-                children.map(|child| (vertices[frozen.last_vertices.at(child) as usize], value(child), child)),
-            );
+            members
+                .extend(children.map(|child| (vertices[frozen.last_vertices.at(child) as usize], value(child), child)));
             Ok::<(), SizeError>(())
         };
         let mut growth = Growth { tree: &mut left, children, pool: Vec::new() };

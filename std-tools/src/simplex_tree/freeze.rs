@@ -16,7 +16,8 @@ impl SimplexTree {
     pub fn freeze(&self) -> FrozenTree {
         let vertices: Vec<u32> = self.tops.labels().collect();
         let counts = self.counts();
-        let first: Vec<usize> = counts.iter().scan(0, |next, &count| Some(std::mem::replace(next, *next + count))).collect();
+        let first: Vec<usize> =
+            counts.iter().scan(0, |next, &count| Some(std::mem::replace(next, *next + count))).collect();
         let num_simplices = self.num_simplices();
         let mut frozen = FrozenTree {
             child_offsets: Vec::with_capacity(first.last().map_or(0, |&last| last + 1)),

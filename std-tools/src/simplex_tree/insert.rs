@@ -131,7 +131,13 @@ impl SimplexTree {
 
     /// Inserts labels, increasing, among the children of a node, which have dimension `dim`; those that are there get the
     /// lower one of the two values. Returns the set.
-    pub(super) fn insert_children(&mut self, parent: Place, labels: &[u32], value: f64, dim: Dim) -> Result<u32, SizeError> {
+    pub(super) fn insert_children(
+        &mut self,
+        parent: Place,
+        labels: &[u32],
+        value: f64,
+        dim: Dim,
+    ) -> Result<u32, SizeError> {
         let set = self.child_at(parent);
         if set == NONE {
             return self.add_set(parent, dim, labels.iter().map(|&label| (label, value)));

@@ -70,7 +70,9 @@ impl SimplexTree {
     pub(super) fn unlist(&mut self, set: u32, index: usize, dim: Dim) {
         let Some(lists) = &mut self.lists else { return };
         let (label, slot) = (self.arena.labels(set)[index], self.arena.slot(set, index));
-        let Some(list) = lists.sets.get_mut(&key(label, dim)).filter(|list| (slot as usize) < list.len()) else { return };
+        let Some(list) = lists.sets.get_mut(&key(label, dim)).filter(|list| (slot as usize) < list.len()) else {
+            return;
+        };
         list.swap_remove(slot as usize);
         // The last of the list has taken the slot.
         match list.get(slot as usize) {

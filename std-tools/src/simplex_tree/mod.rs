@@ -45,9 +45,7 @@ use sig_core::{Dim, MAX_DIM};
 pub use cofaces::Cofaces;
 pub use collapse::{Collapse, Collapses};
 pub use contract::{Contraction, LinkCondition};
-pub use error::{
-    ContractError, ExpandError, InsertError, NotFree, RelabelError, SizeError, ThawError, WordError,
-};
+pub use error::{ContractError, ExpandError, InsertError, NotFree, RelabelError, SizeError, ThawError, WordError};
 pub use iterate::DepthFirst;
 pub use node::Simplex;
 pub use thaw::Vertices;

@@ -15,7 +15,7 @@ pub(crate) struct Model {
 /// The words whose vertices are among those of a word, itself among them.
 pub(crate) fn faces(word: &[u32]) -> Vec<Word> {
     let subsets = 1_u64..1 << word.len();
-    let pick = |mask: u64| word.iter().enumerate().filter(|(at, _)| mask >> at & 1 == 1).map(|(_, &label)| label);
+    let pick = |mask: u64| word.iter().enumerate().filter(move |(at, _)| mask >> at & 1 == 1).map(|(_, &label)| label);
     subsets.map(|mask| pick(mask).collect()).collect()
 }
 

@@ -63,7 +63,9 @@ fn insert(model: &mut Model, tree: &mut SimplexTree, word: &[u32], value: f64) {
         // The facets are looked at in order, for both faults.
         let first = facets.iter().find(|&facet| !model.has(facet) || model.values[facet] > value);
         match result {
-            Err(InsertError::MissingFacet { facet }) => assert_eq!(Some(&facet), first.filter(|&first| first == missing)),
+            Err(InsertError::MissingFacet { facet }) => {
+                assert_eq!(Some(&facet), first.filter(|&first| first == missing))
+            }
             Err(InsertError::BelowFacet { facet, .. }) => assert_eq!(Some(&facet), first),
             other => panic!("{other:?}"),
         }
