@@ -33,6 +33,7 @@
 
 pub mod analysis;
 pub mod build;
+pub mod distances;
 pub mod export;
 pub mod frozen;
 pub mod generate;
@@ -41,8 +42,10 @@ pub mod incidence_graph;
 pub mod io;
 pub mod names;
 pub mod points;
+pub mod proximity;
 pub mod soup;
 pub mod store;
+pub mod subsample;
 pub mod tops;
 
 pub use store::{Loaded, Mapped, OwnedScratch};

@@ -1,0 +1,3 @@
+//! Which points are near each other.
+
+pub(crate) mod lanes;
