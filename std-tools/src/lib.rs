@@ -35,6 +35,7 @@ pub mod analysis;
 pub mod build;
 pub mod distances;
 pub mod export;
+pub mod flag;
 pub mod frozen;
 pub mod generate;
 pub mod graph;
