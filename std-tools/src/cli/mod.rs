@@ -7,6 +7,7 @@
 mod build;
 mod completions;
 mod export;
+mod frozen_output;
 mod info;
 mod input;
 mod man;
