@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 /// A simple graph on the vertices `0..num_vertices`; each edge is kept once, with its lower vertex.
 ///
 /// Made by the searches on points and by the readers of matrices and edge lists; expanded by [`crate::flag`].
@@ -98,6 +100,45 @@ impl Graph {
         let upper = sorted.iter().map(|&(_, b, _)| b).collect();
         let weights = weights.map(|_| sorted.iter().map(|&(_, _, weight)| weight).collect());
         Ok(Self { offsets, upper, weights, vertex_weights: None })
+    }
+
+    /// The graph with the given edges, all different and each with its lower vertex first, in parts as a search found
+    /// them; weighted by `weight` if there is one.
+    ///
+    /// Time: linear, and a sort of each vertex's neighbours. The vertices must be fewer than 2^32 − 1.
+    pub(crate) fn from_pairs<W: Fn(u32, u32) -> f64 + Sync>(
+        num_vertices: usize,
+        parts: Vec<Vec<(u32, u32)>>,
+        weight: Option<&W>,
+    ) -> Self {
+        let mut offsets = vec![0; num_vertices + 1];
+        for &(a, _) in parts.iter().flatten() {
+            offsets[a as usize + 1] += 1;
+        }
+        for vertex in 0..num_vertices {
+            offsets[vertex + 1] += offsets[vertex];
+        }
+        let mut ends = offsets.clone();
+        let mut upper = vec![0; offsets[num_vertices]];
+        for (a, b) in parts.into_iter().flatten() {
+            upper[ends[a as usize]] = b;
+            ends[a as usize] += 1;
+        }
+        drop(ends);
+        let mut lists: Vec<&mut [u32]> = Vec::with_capacity(num_vertices);
+        let mut rest = upper.as_mut_slice();
+        for degree in offsets.windows(2).map(|pair| pair[1] - pair[0]) {
+            let (list, others) = rest.split_at_mut(degree);
+            lists.push(list);
+            rest = others;
+        }
+        lists.into_par_iter().with_min_len(256).for_each(<[u32]>::sort_unstable);
+        let weights = weight.map(|weight| {
+            let of = |vertex: usize| &upper[offsets[vertex]..offsets[vertex + 1]];
+            let weights = |vertex| of(vertex).iter().map(move |&other| weight(crate::build::narrow(vertex), other));
+            (0..num_vertices).into_par_iter().with_min_len(256).flat_map_iter(weights).collect()
+        });
+        Self { offsets, upper, weights, vertex_weights: None }
     }
 
     /// The graph with the upper neighbours of each vertex, increasing, as the searches on points find them.

@@ -36,6 +36,7 @@
 pub mod analysis;
 pub mod build;
 pub mod contract;
+pub mod distances;
 pub mod export;
 pub mod flag;
 pub mod frozen;
@@ -46,8 +47,10 @@ pub mod io;
 pub mod names;
 pub mod points;
 pub mod simplex_tree;
+pub mod proximity;
 pub mod soup;
 pub mod store;
+pub mod subsample;
 pub mod tops;
 
 pub use store::{Loaded, Mapped, OwnedScratch};
