@@ -17,7 +17,7 @@ pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Faul
 }
 
 /// The format that the extension of a name stands for, that of a compressed file being the one before `.gz`.
-fn by_name(name: &str) -> Option<Format> {
+pub(super) fn by_name(name: &str) -> Option<Format> {
     let name = name.get(..name.len().saturating_sub(3)).filter(|_| has_gz(name)).unwrap_or(name);
     let (stem, extension) = name.rsplit_once('.')?;
     // A dot may also stand in a directory, or begin the name.
@@ -41,7 +41,7 @@ fn first_word(line: &[u8]) -> &[u8] {
 }
 
 /// The format of content that names it.
-fn certain(head: &[u8], length: Option<u64>) -> Option<Format> {
+pub(super) fn certain(head: &[u8], length: Option<u64>) -> Option<Format> {
     let line = first_line(head);
     let word = first_word(line);
     if word == b"ply" && line == word {

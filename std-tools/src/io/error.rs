@@ -7,6 +7,7 @@ use std::fmt;
 use std::io;
 
 use super::Format;
+use super::space::SpaceFormat;
 
 /// A place in an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +60,9 @@ pub enum ErrorKind {
     /// Neither the content nor the name tells the format.
     #[error("neither the content nor the name tells the format; name it (--format), one of: {}", names())]
     UnknownFormat,
+    /// The same, of an input that should hold points, distances or a graph.
+    #[error("neither the content nor the name tells the format; name it (--format), one of: {}", space_names())]
+    UnknownSpace,
     /// Something else stands where something definite must.
     #[error("expected {expected}, found {found}")]
     Expected {
@@ -157,6 +161,10 @@ pub enum ErrorKind {
 
 fn names() -> String {
     Format::ALL.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ")
+}
+
+fn space_names() -> String {
+    SpaceFormat::ALL.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ")
 }
 
 /// A place and what is wrong there; [`ReadError`] without the name of the input.

@@ -20,6 +20,7 @@ mod ply;
 mod report;
 mod simplex_list;
 mod source;
+pub mod space;
 mod stl;
 #[cfg(test)]
 mod tests;
@@ -141,16 +142,29 @@ impl fmt::Debug for ReadOptions<'_> {
 /// # Errors
 /// If the file cannot be read, if its format is not known, or if it breaks the rules of its format.
 pub fn read_path(path: impl AsRef<Path>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), ReadError> {
-    let path = path.as_ref();
+    with_path(path.as_ref(), |reader, length, name| read_sized(reader, length, name, options))
+}
+
+/// Opens the file at `path`, or standard input if `path` is `-`, and reads it by `read`, which is told the length, if it
+/// is known, and the name.
+fn with_path<T>(
+    path: &Path,
+    read: impl FnOnce(Box<dyn Read>, Option<u64>, &str) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
     if path.as_os_str() == "-" {
-        return read(std::io::stdin().lock(), "-", options);
+        return read(Box::new(std::io::stdin().lock()), None, "-");
     }
     let name = path.to_string_lossy();
     let failed = |error| Fault::new(Position::Whole, ErrorKind::Io(error)).in_file(&name);
     let file = File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
     let length = metadata.is_file().then_some(metadata.len());
-    read_sized(file, length, &name, options)
+    read(Box::new(file), length, &name)
+}
+
+/// What errors call an input.
+fn displayed(name: &str) -> &str {
+    if name == "-" { "<stdin>" } else { name }
 }
 
 /// Reads an input that is called `name` in errors and, for want of a better clue, in finding the format.
@@ -183,16 +197,21 @@ fn read_sized(
             Some(format) => format,
             None => detect::format(&mut source, name)?,
         };
-        let (soup, mut report) = match format {
-            Format::Off => off::read(&mut source, options),
-            Format::Obj => obj::read(&mut source, options),
-            Format::Ply => ply::read(&mut source, options),
-            Format::Stl => stl::read(&mut source, options),
-            Format::Msh => msh::read(&mut source, options),
-            Format::SimplexList => simplex_list::read(&mut source, options),
-        }?;
+        let (soup, mut report) = read_as(format, &mut source, options)?;
         report.gzip = source.gzip;
         Ok((soup, report))
     };
-    run().map_err(|fault: Fault| fault.in_file(if name == "-" { "<stdin>" } else { name }))
+    run().map_err(|fault: Fault| fault.in_file(displayed(name)))
+}
+
+/// Reads an input of the given format.
+fn read_as(format: Format, source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
+    match format {
+        Format::Off => off::read(source, options),
+        Format::Obj => obj::read(source, options),
+        Format::Ply => ply::read(source, options),
+        Format::Stl => stl::read(source, options),
+        Format::Msh => msh::read(source, options),
+        Format::SimplexList => simplex_list::read(source, options),
+    }
 }
