@@ -52,6 +52,7 @@ pub mod soup;
 pub mod store;
 pub mod subsample;
 pub mod tops;
+pub mod witness;
 
 pub use store::{Loaded, Mapped, OwnedScratch};
 
