@@ -104,6 +104,7 @@ impl<I: Index> Before<'_, I> {
         let filtration = self.filtration_values(&star, kept, removed, &view, &names);
         vertices.insert(removed);
         let conflicting = report.conflicting;
+        let parity = parity.unwrap_or_default();
         Ok(Edit { removed, kept, star, vertices, local, names, is_changed, places, parity, conflicting, filtration })
     }
 

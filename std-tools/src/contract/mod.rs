@@ -136,7 +136,8 @@ where
 {
     let view = View::new(&arrays);
     let low_tops = view.low_tops(&built.report.top_simplices);
-    let before = Before { view, low_tops, parity: &built.parity, filtration: built.filtration.as_deref() };
+    let parity = built.parity.as_deref().unwrap_or_default();
+    let before = Before { view, low_tops, parity, filtration: built.filtration.as_deref() };
     let (edits, taken, bad) = independent_edits(&before, edges, start, stands_for, report);
     if edits.is_empty() {
         built.arrays = arrays.into();
@@ -151,7 +152,8 @@ where
 
     let (parity, top_simplices) = apply::parity(&before, &edits, &renumbering);
     built.arrays = apply::arrays(arrays, &edits, &renumbering);
-    built.parity = parity;
+    // Without orientations before, there are none after.
+    built.parity = built.parity.is_some().then_some(parity);
     built.report = BuildReport {
         listed: top_simplices.iter().sum(),
         conflicting: edits.iter().map(|edit| edit.conflicting).sum(),
