@@ -9,6 +9,8 @@
 //! `gudhi_bench rips min FILE RADIUS DIM` expands the same points (see benches/peers). Machines are noisy, so whatever is
 //! compared is measured in turn, several rounds, and the medians are printed. Read the ratios.
 
+#![allow(clippy::cast_possible_truncation, reason = "inputs are small")]
+
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
