@@ -8,6 +8,8 @@
 //! | read meshes and lists of simplices | [`io`] | [`io::read_path`], [`io::merge`](io::merge()) |
 //! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
 //! | arrays in canonical order | [`mod@build`] | [`build::build`] |
+//! | cliques of a graph as a simplex tree | [`graph`], [`mod@flag`], [`frozen`] | [`flag::expand`] |
+//! | a simplex tree to the same arrays | [`mod@build`] | [`build::complete`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | contract edges of what is built | [`mod@contract`] | [`contract::contract`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |

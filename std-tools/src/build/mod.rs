@@ -30,10 +30,10 @@ use sig_core::{Dim, Index};
 
 use crate::soup::{Coordinates, Labels, Soup};
 
-pub(crate) use limits::available_memory;
-use limits::{Limit, Meter, Reservation};
 pub use complete::complete;
 pub(crate) use facets::seek;
+pub(crate) use limits::available_memory;
+use limits::{Limit, Meter, Reservation};
 pub(crate) use lists::pack;
 use order::number_vertices;
 pub(crate) use order::numbered_if_possible;
@@ -369,7 +369,11 @@ pub(crate) fn ids(first: &[usize], num_simplices: usize, dim: Dim) -> std::ops::
 
 /// Adds the partial co-boundary relations to the arrays of the faces, and reads off what is known of the listed
 /// simplices (`listed`: one byte a simplex, see [`local`]).
-fn finish<I: clusters::Cell>(arrays: SigArrays<I>, listed: &[Vec<u8>], meter: &Meter<'_>) -> (Arrays, Vec<u8>, report::Counts)
+fn finish<I: clusters::Cell>(
+    arrays: SigArrays<I>,
+    listed: &[Vec<u8>],
+    meter: &Meter<'_>,
+) -> (Arrays, Vec<u8>, report::Counts)
 where
     Arrays: From<SigArrays<I>>,
 {

@@ -4,6 +4,7 @@
 #![allow(clippy::cast_possible_truncation)]
 
 mod agreement;
+mod complete;
 mod known_answers;
 mod oracle;
 mod order;

@@ -217,7 +217,8 @@ impl<I: Cell> Level<'_, I> {
                     }
                     for j in 1..=q {
                         for i in 0..j {
-                            let (a, b) = (first_items[i] + (j - 1) * facet_items[i].1, first_items[j] + i * facet_items[j].1);
+                            let (a, b) =
+                                (first_items[i] + (j - 1) * facet_items[i].1, first_items[j] + i * facet_items[j].1);
                             sets.join(a, b);
                         }
                     }
@@ -248,8 +249,7 @@ impl<I: Cell> Level<'_, I> {
         }
         let entries: Vec<I::Shared> = (0..end).map(|_| I::ZERO.share()).collect();
         // Where nothing joins, nobody asks for classes.
-        let roots: Vec<U::Shared> =
-            (0..if sets.is_none() { 0 } else { end }).map(|_| U::ZERO.share()).collect();
+        let roots: Vec<U::Shared> = (0..if sets.is_none() { 0 } else { end }).map(|_| U::ZERO.share()).collect();
         self.for_each_item(|item, facet, representative| {
             if sets.is_root(item) {
                 // What starts at the next simplex, when all is filled in.

@@ -1,0 +1,145 @@
+//! What the flag complex of points on the 4-sphere costs: expansion to the frozen tree, and completing it to a whole SIG.
+//!
+//! ```text
+//! cargo bench --bench flag                             5,000, 16,000 and 50,000 points with the same number of neighbours
+//! cargo bench --bench flag -- 50000 0.253 5            points, radius, largest dimension
+//! GUDHI_BENCH=./gudhi_bench cargo bench --bench flag   with GUDHI's leanest simplex tree in the same run
+//! ```
+//!
+//! `gudhi_bench rips min FILE RADIUS DIM` expands the same points (see benches/peers). Machines are noisy, so whatever is
+//! compared is measured in turn, several rounds, and the medians are printed. Read the ratios.
+
+#![allow(clippy::cast_possible_truncation, reason = "inputs are small")]
+
+use std::error::Error;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use sig_tools::build::{BuildOptions, complete};
+use sig_tools::flag::{FlagOptions, expand};
+use sig_tools::frozen::FrozenTree;
+use sig_tools::generate::sphere4;
+use sig_tools::graph::Graph;
+use sig_tools::points::{Metric, Points};
+use sig_tools::store::{EncodeOptions, Encoding};
+
+const ROUNDS: usize = 3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let runs = match arguments.as_slice() {
+        [count, radius, max_dim] => vec![(count.parse()?, radius.parse()?, max_dim.parse()?)],
+        // The radius goes with the fourth root of the density, so that the mean degree is the same.
+        _ => [5_000, 16_000, 50_000].map(|count| (count, 0.253 * (50_000.0 / count as f64).powf(0.25), 5)).to_vec(),
+    };
+    println!("medians of {ROUNDS} rounds; threads: {}", rayon::current_num_threads());
+    runs.into_iter().try_for_each(|(count, radius, max_dim)| measure(count, radius, max_dim))
+}
+
+fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Error>> {
+    let points = sphere4(count, 1);
+    let graph = radius_graph(&points, radius)?;
+    let file = tempfile::NamedTempFile::new()?;
+    write_points(file.path(), &points)?;
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let options = FlagOptions { max_dim, ..FlagOptions::default() };
+    let (mut all, mut single, mut floor, mut whole, mut peer) = (vec![], vec![], vec![], vec![], vec![]);
+    let mut counts = Vec::new();
+    for _ in 0..ROUNDS {
+        let (seconds, tree) = timed(|| expand(&graph, &options));
+        let tree = tree?;
+        all.push(seconds);
+        counts = tree.counts();
+        if all.len() == 1 {
+            println!("\n{count} points, radius {radius:.4}: {} simplices {counts:?}", tree.num_simplices);
+            let bytes = Encoding::of_tree(&tree, &EncodeOptions::default())?.file_bytes()?;
+            println!("  file of the tree: {:.2} bytes a simplex", bytes as f64 / tree.num_simplices as f64);
+        }
+        single.push(timed(|| one.install(|| expand(&graph, &options))).0);
+        floor.push(timed(|| written(&tree)).0);
+        let (seconds, built) = timed(|| complete(tree, &BuildOptions::default()));
+        black_box(built?);
+        whole.push(all[all.len() - 1] + seconds);
+        if let Some(program) = std::env::var_os("GUDHI_BENCH") {
+            peer.push(run_peer(program.as_ref(), file.path(), radius, max_dim, &counts)?);
+        }
+    }
+    let simplices = counts.iter().sum::<usize>() as f64;
+    let each = |seconds: f64| format!("{:.2} ns a simplex", seconds * 1e9 / simplices);
+    let (all, single, floor, whole) = (median(all), median(single), median(floor), median(whole));
+    println!("  expansion, all threads  {}, {:.1} times writing as many bytes on one", each(all), all / floor);
+    println!("  expansion, one thread   {}, {:.1} times", each(single), single / floor);
+    println!("  the whole SIG           {}", each(whole));
+    if !peer.is_empty() {
+        let peer = median(peer);
+        println!("  GUDHI's tree            {}", each(peer));
+        println!("  GUDHI / expansion       {:.1} all threads, {:.1} one", peer / all, peer / single);
+        println!("  whole SIG / GUDHI       {:.2}", whole / peer);
+    }
+    Ok(())
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let result = work();
+    (start.elapsed().as_secs_f64(), result)
+}
+
+fn median(mut samples: Vec<f64>) -> f64 {
+    samples.sort_by(f64::total_cmp);
+    samples.get(samples.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// As many bytes as the tree has, written in memory that is new: no expansion takes less.
+fn written(tree: &FrozenTree) -> (Vec<u16>, Vec<u32>) {
+    (black_box(vec![1; tree.num_simplices]), black_box(vec![1; tree.child_offsets.len()]))
+}
+
+/// The pairs up to a distance, found through cells of the first two coordinates.
+fn radius_graph(points: &Points, radius: f64) -> Result<Graph, Box<dyn Error>> {
+    let side = (2.0 / radius).ceil() as usize + 1;
+    let cell = |index: usize, axis: usize| ((points.point(index)[axis] + 1.0) / radius) as usize;
+    let mut cells = vec![Vec::new(); side * side];
+    for index in 0..points.len() {
+        cells[cell(index, 0) * side + cell(index, 1)].push(index as u32);
+    }
+    let lists: Vec<Vec<u32>> = (0..points.len())
+        .into_par_iter()
+        .map(|index| {
+            let near = |axis| cell(index, axis).saturating_sub(1)..side.min(cell(index, axis) + 2);
+            let is_near =
+                |other: &u32| Metric::Euclidean.distance(points.point(index), points.point(*other as usize)) <= radius;
+            let candidates = near(0).flat_map(|x| near(1).flat_map(move |y| [x * side + y])).flat_map(|c| &cells[c]);
+            let mut list: Vec<u32> =
+                candidates.copied().filter(|other| *other as usize > index).filter(is_near).collect();
+            list.sort_unstable();
+            list
+        })
+        .collect();
+    Ok(Graph::from_upper_lists(&lists, None)?)
+}
+
+fn write_points(path: &Path, points: &Points) -> Result<(), Box<dyn Error>> {
+    let mut bytes = b"PTS1".to_vec();
+    bytes.extend(u32::try_from(points.dim())?.to_le_bytes());
+    bytes.extend((points.len() as u64).to_le_bytes());
+    bytes.extend(points.values().iter().flat_map(|value| value.to_le_bytes()));
+    Ok(std::fs::write(path, bytes)?)
+}
+
+/// Seconds that the peer takes to insert the same edges and expand them; its counts must be the same.
+fn run_peer(program: &Path, file: &Path, radius: f64, max_dim: usize, counts: &[usize]) -> Result<f64, Box<dyn Error>> {
+    let arguments = [radius.to_string(), max_dim.to_string()];
+    let output = Command::new(program).args(["rips", "min"]).arg(file).args(arguments).output()?;
+    let text = String::from_utf8(output.stdout)?;
+    let dims = text.split("dims=").nth(1).and_then(|rest| rest.lines().next()).ok_or("no counts of the peer")?;
+    let theirs: Result<Vec<usize>, _> = dims.split_whitespace().map(str::parse).collect();
+    if theirs? != counts {
+        return Err(format!("the peer counts {dims}").into());
+    }
+    let seconds = text.split("expansion_s=").nth(1).and_then(|rest| rest.split(' ').next());
+    Ok(seconds.ok_or("no figure of the peer")?.parse()?)
+}
