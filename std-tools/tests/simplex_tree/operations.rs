@@ -221,7 +221,7 @@ fn apply(operation: Operation, model: &mut Model, tree: &mut SimplexTree) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn sequences_of_operations_do_what_they_do_to_a_set_of_words(
