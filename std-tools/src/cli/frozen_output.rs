@@ -1,13 +1,14 @@
-//! Writing a simplex tree in level order as a file of either kind: what every command ends with that makes or changes a
+//! Writing a simplex tree in level order as a file of either kind, or as text: what every command ends with that makes or changes a
 //! complex by its tree.
 
-use std::io::IsTerminal;
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 use serde::Serialize;
 use sig_tools::build::{self, BuildError, BuildOptions, Built, VertexOrder};
 use sig_tools::frozen::FrozenTree;
+use sig_tools::simplex_tree::SimplexTree;
 use sig_tools::soup::{Labels, Soup};
 use sig_tools::store::{EncodeOptions, Encoding};
 
@@ -22,6 +23,8 @@ pub(super) enum Kind {
     /// Boundary and co-boundary relations as well, which answer every query
     #[default]
     Sig,
+    /// GUDHI's simplex-tree text, by filtration value; vertices without integer labels by their numbers
+    Gudhi,
 }
 
 /// The arguments of a file of either kind.
@@ -50,7 +53,7 @@ impl FrozenTarget {
         if json && output::is_stdout(path) {
             return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
         }
-        if output::is_stdout(path) && std::io::stdout().is_terminal() {
+        if self.kind != Kind::Gudhi && output::is_stdout(path) && std::io::stdout().is_terminal() {
             return Err(UsageError("-o - writes a binary file, and standard output is a terminal".to_owned()).into());
         }
         output::check(path, self.target.existing(), inputs)
@@ -63,7 +66,9 @@ pub(super) struct Written {
     output: String,
     kind: &'static str,
     file_bytes: u64,
-    index_bits: u32,
+    /// Of a file of this program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    index_bits: Option<u32>,
     dimension: i64,
     simplices: Vec<usize>,
 }
@@ -76,9 +81,9 @@ pub(super) fn write(tree: FrozenTree, target: &FrozenTarget) -> anyhow::Result<W
         ..EncodeOptions::default()
     };
     let simplices = tree.counts();
-    let write = |encoding: Encoding<'_>| -> anyhow::Result<(u64, u32)> {
+    let write = |encoding: Encoding<'_>| -> anyhow::Result<(u64, Option<u32>)> {
         output::to_path(&target.target.output, target.target.existing(), |out| encoding.write_to(out))?;
-        Ok((encoding.file_bytes()?, encoding.width().bits()))
+        Ok((encoding.file_bytes()?, Some(encoding.width().bits())))
     };
     let (file_bytes, index_bits) = match target.kind {
         Kind::Tree => write(Encoding::of_tree(&tree, &options)?)?,
@@ -90,10 +95,23 @@ pub(super) fn write(tree: FrozenTree, target: &FrozenTarget) -> anyhow::Result<W
             bars.clear();
             write(Encoding::new(&built?, &options)?)?
         }
+        Kind::Gudhi => {
+            let (thawed, _) = SimplexTree::thaw(&tree)?;
+            drop(tree);
+            let mut bytes = 0;
+            output::to_path(&target.target.output, target.target.existing(), |out| {
+                thawed.write_text(Counted { out, bytes: &mut bytes })
+            })?;
+            (bytes, None)
+        }
     };
     Ok(Written {
         output: target.target.output.display().to_string(),
-        kind: if target.kind == Kind::Tree { "tree" } else { "sig" },
+        kind: match target.kind {
+            Kind::Tree => "tree",
+            Kind::Sig => "sig",
+            Kind::Gudhi => "gudhi",
+        },
         file_bytes,
         index_bits,
         dimension: i64::try_from(simplices.len()).unwrap_or(i64::MAX) - 1,
@@ -108,8 +126,26 @@ impl Written {
         let counts: Vec<_> = self.simplices.iter().map(grouped).collect();
         let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
         output::log(format_args!("made   dimension {}, {} simplices{counts}", self.dimension, grouped(total)));
-        let (bytes, width) = (grouped(self.file_bytes), self.index_bits);
-        output::log(format_args!("wrote  {}: {}, {bytes} bytes, {width}-bit indices", self.output, self.kind));
+        let width = self.index_bits.map_or(String::new(), |width| format!(", {width}-bit indices"));
+        output::log(format_args!("wrote  {}: {}, {} bytes{width}", self.output, self.kind, grouped(self.file_bytes)));
+    }
+}
+
+/// A writer that counts.
+struct Counted<'a> {
+    out: &'a mut dyn Write,
+    bytes: &'a mut u64,
+}
+
+impl Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        *self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
     }
 }
 

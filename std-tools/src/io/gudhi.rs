@@ -10,8 +10,10 @@ use super::error::{ErrorKind, Fault, Position, ReadError};
 use super::source::Source;
 use super::text::{Line, parse_float};
 
-/// Reads filtered simplices, and hands each over with its place: the vertices, increasing, and the value, a number. What
-/// the receiver refuses is an error at that place.
+/// Takes a simplex: its vertices, increasing, its value, a number, and its place; or refuses it with a message.
+pub(crate) type Receiver<'a> = dyn FnMut(&[u32], f64, Position) -> Result<(), String> + 'a;
+
+/// Reads filtered simplices, and hands each over. What the receiver refuses is an error at that place.
 ///
 /// Takes time linear in the input, memory for one line.
 ///
@@ -21,7 +23,7 @@ pub(crate) fn read_filtered(
     reader: impl Read,
     name: &str,
     progress: Option<&(dyn Fn(u64) + Sync)>,
-    receive: &mut dyn FnMut(&[u32], f64, Position) -> Result<(), String>,
+    receive: &mut Receiver<'_>,
 ) -> Result<(), ReadError> {
     let run = || {
         let mut source = Source::new(reader, None, progress)?;

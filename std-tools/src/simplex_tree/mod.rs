@@ -150,7 +150,7 @@ impl SimplexTree {
     /// χ = Σ (−1)^p n_p.
     #[must_use]
     pub fn euler_characteristic(&self) -> i64 {
-        let sign = |dim: Dim| if dim % 2 == 0 { 1 } else { -1 };
+        let sign = |dim: Dim| if dim.is_multiple_of(2) { 1 } else { -1 };
         let signed = |(dim, &count): (Dim, &usize)| sign(dim) * i64::try_from(count).unwrap_or(i64::MAX);
         self.counts.iter().enumerate().map(signed).sum()
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use sig_tools::simplex_tree::{InsertError, LinkCondition, SimplexTree};
+use sig_tools::simplex_tree::{InsertError, LinkCondition, Simplex, SimplexTree};
 
 use crate::model::{Model, Word, faces, union};
 
@@ -64,7 +64,7 @@ fn insert(model: &mut Model, tree: &mut SimplexTree, word: &[u32], value: f64) {
         let first = facets.iter().find(|&facet| !model.has(facet) || model.values[facet] > value);
         match result {
             Err(InsertError::MissingFacet { facet }) => {
-                assert_eq!(Some(&facet), first.filter(|&first| first == missing))
+                assert_eq!(Some(&facet), first.filter(|&first| first == missing));
             }
             Err(InsertError::BelowFacet { facet, .. }) => assert_eq!(Some(&facet), first),
             other => panic!("{other:?}"),
@@ -221,7 +221,7 @@ fn apply(operation: Operation, model: &mut Model, tree: &mut SimplexTree) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn sequences_of_operations_do_what_they_do_to_a_set_of_words(
@@ -233,7 +233,7 @@ proptest! {
             model.assert_is(&tree);
             assert!(tree.is_closed());
             for &label in &LABELS {
-                let star: BTreeSet<Word> = tree.star(&[label]).map(|coface| coface.word()).collect();
+                let star: BTreeSet<Word> = tree.star(&[label]).map(Simplex::word).collect();
                 assert_eq!(star, model.star(&[label]));
             }
         }
