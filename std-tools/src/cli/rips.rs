@@ -218,7 +218,7 @@ impl Args {
         match space {
             Space::Points(points) => self.of_points(points, report),
             Space::Distances(distances) => self.of_distances(distances, report),
-            Space::Graph { graph, labels } => self.of_graph(graph, labels),
+            Space::Graph { graph, labels } => self.of_graph(&graph, labels),
         }
     }
 
@@ -260,7 +260,7 @@ impl Args {
         Ok(Skeleton { graph, labels: numbers(&rows), coordinates: None })
     }
 
-    fn of_graph(&self, graph: Graph, labels: Labels) -> anyhow::Result<Skeleton> {
+    fn of_graph(&self, graph: &Graph, labels: Labels) -> anyhow::Result<Skeleton> {
         let needs_weights = [(self.radius.is_some(), "--radius"), (self.filtration, "--filtration")];
         if let Some((_, option)) = needs_weights.into_iter().find(|(given, _)| *given && !graph.is_weighted()) {
             return Err(UsageError(format!("{option} needs weights, and the edges of the input have none")).into());

@@ -88,7 +88,7 @@ mod tests {
             for j in i + 1..points.len() {
                 let distance = metric.distance(points.point(i), points.point(j));
                 if distance <= radius {
-                    edges.push((i as u32, j as u32));
+                    edges.push((crate::build::narrow(i), crate::build::narrow(j)));
                     weights.push(distance);
                 }
             }
