@@ -20,8 +20,11 @@ use sig_tools::proximity::{RadiusOptions, radius_graph};
 
 const ROUNDS: usize = 5;
 
+/// A name, points, and a radius.
+type Cloud = (&'static str, fn() -> Points, f64);
+
 /// Clouds with a radius; S4 and Kl as in the literature, one of many dimensions where a grid helps, one where none does.
-const CLOUDS: [(&str, fn() -> Points, f64); 4] = [
+const CLOUDS: [Cloud; 4] = [
     ("s4: 50,000 points on the 4-sphere", || sphere4(50_000, 1), 0.253),
     ("kl: 90,000 points of a Klein bottle in R^5", || klein_bottle_grid(300), 0.075),
     ("ver: 15,000 points of a Veronese variety in R^25", || veronese(15_000, 5), 0.2),
@@ -39,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn read(file: &str) -> Result<Points, Box<dyn Error>> {
-    Err(file.into())
+    Ok(sig_tools::io::space::read_points_path(file, &sig_tools::io::space::SpaceOptions::default())?.0)
 }
 
 /// Median, least and most of some timings, in seconds.

@@ -10,6 +10,9 @@
 //! | arrays in canonical order | [`mod@build`] | [`build::build`] |
 //! | cliques of a graph as a simplex tree | [`graph`], [`mod@flag`], [`frozen`] | [`flag::expand`] |
 //! | a simplex tree to the same arrays | [`mod@build`] | [`build::complete`] |
+//! | read points, distances, graphs | [`io::space`] | [`io::space::read_space_path`] |
+//! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
+//! | a few of many points | [`subsample`] | [`subsample::farthest_points`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | contract edges of what is built | [`mod@contract`] | [`contract::contract`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |

@@ -35,6 +35,7 @@ pub(crate) use facets::seek;
 pub(crate) use limits::available_memory;
 use limits::{Limit, Meter, Reservation};
 pub(crate) use lists::pack;
+pub(crate) use order::hilbert_order;
 use order::number_vertices;
 pub(crate) use order::numbered_if_possible;
 pub use report::BuildReport;

@@ -44,13 +44,13 @@ fn double(bytes: &[u8]) -> f64 {
     bytes.first_chunk().map_or(f64::NAN, |&bytes| f64::from_le_bytes(bytes))
 }
 
-fn unexpected(position: Position, expected: impl Into<String>, found: impl ToString) -> Fault {
+fn unexpected(position: Position, expected: impl Into<String>, found: &impl ToString) -> Fault {
     let found = excerpt(found.to_string().as_bytes());
     Fault::new(position, ErrorKind::Expected { expected: expected.into().into(), found })
 }
 
 fn distance(position: Position, value: f64) -> Result<f64, Fault> {
-    if value.is_finite() && value >= 0.0 { Ok(value + 0.0) } else { Err(unexpected(position, A_DISTANCE, value)) }
+    if value.is_finite() && value >= 0.0 { Ok(value + 0.0) } else { Err(unexpected(position, A_DISTANCE, &value)) }
 }
 
 /// The next 64-bit number.
@@ -63,14 +63,14 @@ fn count(source: &mut Source<'_>, expected: &'static str) -> Result<u64, Fault> 
 pub(super) fn pts(source: &mut Source<'_>) -> Result<Points, Fault> {
     let magic = source.take(4, "PTS1")?;
     if magic != PTS_MAGIC {
-        return Err(unexpected(Position::Byte(0), "PTS1", magic.escape_ascii()));
+        return Err(unexpected(Position::Byte(0), "PTS1", &magic.escape_ascii()));
     }
     let dim =
         source.take(4, "the dimension of the points")?.first_chunk().map_or(0, |&bytes| u32::from_le_bytes(bytes));
     let position = source.byte();
     let points = count(source, "the number of points")?;
     let Some(values) = points.checked_mul(dim.into()).filter(|_| dim > 0 || points == 0) else {
-        return Err(unexpected(position, format!("a possible number of points of dimension {dim}"), points));
+        return Err(unexpected(position, format!("a possible number of points of dimension {dim}"), &points));
     };
     let mut coordinates = Vec::with_capacity(reserve(values));
     each(source, values, 8, "as many coordinates as the header says", |position, bytes| {
@@ -98,7 +98,7 @@ pub(super) fn lower(source: &mut Source<'_>) -> Result<Distances, Fault> {
     let len = (1..).find(|&len| pairs(len).is_none_or(|pairs| pairs >= values.len())).unwrap_or(0);
     if values.is_empty() || pairs(len) != Some(values.len()) {
         let expected = "as many distances as points have pairs: 1, 3, 6, 10, … numbers of 32 bits";
-        return Err(unexpected(Position::Whole, expected, values.len()));
+        return Err(unexpected(Position::Whole, expected, &values.len()));
     }
     super::distances(len, values)
 }
@@ -109,14 +109,14 @@ pub(super) fn dipha(source: &mut Source<'_>, repeated: &mut usize) -> Result<Spa
     const SPARSE: u64 = 8;
     let magic = count(source, "DIPHA's first number, 8067171840")?;
     if magic != DIPHA_MAGIC {
-        return Err(unexpected(Position::Byte(0), "DIPHA's first number, 8067171840", magic));
+        return Err(unexpected(Position::Byte(0), "DIPHA's first number, 8067171840", &magic));
     }
     match count(source, "the type of the file")? {
         FULL => full(source).map(Space::Distances),
         SPARSE => sparse(source, repeated),
         other => {
             let expected = "a distance matrix: type 7, or 8 for a sparse one";
-            Err(unexpected(Position::Byte(8), expected, other))
+            Err(unexpected(Position::Byte(8), expected, &other))
         }
     }
 }
@@ -125,12 +125,12 @@ fn full(source: &mut Source<'_>) -> Result<Distances, Fault> {
     let position = source.byte();
     let points = count(source, "the number of points")?;
     let (Ok(len), Some(entries)) = (usize::try_from(points), points.checked_mul(points)) else {
-        return Err(unexpected(position, "a possible number of points", points));
+        return Err(unexpected(position, "a possible number of points", &points));
     };
     let mut matrix = Full::new(len);
     each(source, entries, 8, "as many entries as the header says", |position, bytes| {
         let value = distance(position, double(bytes))?;
-        matrix.push(value).map_err(|expected| unexpected(position, expected, value))
+        matrix.push(value).map_err(|expected| unexpected(position, expected, &value))
     })?;
     source.need_end_of_bytes("file after the matrix")?;
     matrix.finish()
@@ -141,14 +141,14 @@ fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault>
     let position = source.byte();
     let points = count(source, "the number of points")?;
     if points >= u64::from(u32::MAX) {
-        return Err(unexpected(position, "fewer than 4294967295 points", points));
+        return Err(unexpected(position, "fewer than 4294967295 points", &points));
     }
     let mut degrees: Vec<u64> = Vec::with_capacity(reserve(points));
     let mut entries = 0_u64;
     each(source, points, 8, "the number of entries of each row", |position, bytes| {
         let degree = bytes.first_chunk().map_or(0, |&bytes| u64::from_le_bytes(bytes));
         entries =
-            entries.checked_add(degree).ok_or_else(|| unexpected(position, "a possible number of entries", degree))?;
+            entries.checked_add(degree).ok_or_else(|| unexpected(position, "a possible number of entries", &degree))?;
         degrees.push(degree);
         Ok(())
     })?;
@@ -158,7 +158,7 @@ fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault>
         let column = bytes.first_chunk().map_or(0, |&bytes| u64::from_le_bytes(bytes));
         match (rows.next(), u32::try_from(column)) {
             (Some(row), Ok(number)) if column < points => pairs.push((row, number)),
-            _ => return Err(unexpected(position, format!("the number of a point below {points}"), column)),
+            _ => return Err(unexpected(position, format!("the number of a point below {points}"), &column)),
         }
         Ok(())
     })?;
@@ -168,7 +168,7 @@ fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault>
         let value = distance(position, double(bytes))?;
         match each_pair.next() {
             Some(&(a, b)) if a != b => edges.push(a, b, value, position),
-            _ if value != 0.0 => return Err(unexpected(position, "0, the distance of a point and itself", value)),
+            _ if value != 0.0 => return Err(unexpected(position, "0, the distance of a point and itself", &value)),
             _ => {}
         }
         Ok(())

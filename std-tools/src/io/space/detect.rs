@@ -82,9 +82,10 @@ fn by_shape(head: &[u8], length: Option<u64>) -> Option<SpaceFormat> {
     rows.retain(|row| !row.is_empty());
     let first = rows.first()?.len();
     let lengths = || rows.iter().map(Vec::len);
-    if (rows.len() > 1 || begins_empty) && lengths().eq(1..=rows.len()) {
+    // Two rows of a triangle could as well be a slip in a table of points.
+    if (rows.len() > 2 || begins_empty) && lengths().eq(1..=rows.len()) {
         Some(SpaceFormat::Lower)
-    } else if rows.len() > 1 && rows.len() <= first && lengths().eq((0..rows.len()).map(|row| first - row)) {
+    } else if rows.len() > 2 && rows.len() <= first && lengths().eq((0..rows.len()).map(|row| first - row)) {
         Some(SpaceFormat::Upper)
     } else if is_matrix(&rows) {
         Some(SpaceFormat::Full)
