@@ -15,6 +15,7 @@ mod output;
 mod progress;
 mod query;
 mod verify;
+mod witness;
 
 use std::io;
 use std::process::ExitCode;
@@ -45,6 +46,7 @@ interrupted, and 128 and its number for other signals.";
 #[derive(Subcommand)]
 enum Command {
     Build(build::Args),
+    Witness(witness::Args),
     Info(info::Args),
     Query(query::Args),
     Verify(verify::Args),
@@ -57,6 +59,7 @@ impl Command {
     fn run(self) -> anyhow::Result<()> {
         match self {
             Self::Build(args) => args.run(),
+            Self::Witness(args) => args.run(),
             Self::Info(args) => args.run(),
             Self::Query(args) => args.run(),
             Self::Verify(args) => args.run(),
