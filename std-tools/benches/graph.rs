@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn read(file: &str) -> Result<Points, Box<dyn Error>> {
-    Err(file.into())
+    Ok(sig_tools::io::space::read_points_path(file, &sig_tools::io::space::SpaceOptions::default())?.0)
 }
 
 /// Median, least and most of some timings, in seconds.

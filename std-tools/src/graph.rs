@@ -163,6 +163,23 @@ impl Graph {
         Ok(Self { offsets, upper: lists.concat(), weights: weights.map(<[Vec<f64>]>::concat), vertex_weights: None })
     }
 
+    /// The graph of the edges with a weight of at most `most`, which keep their weights if `weighted`; edges without a
+    /// weight have the weight 0. The vertices stay, without weights.
+    #[must_use]
+    pub fn up_to(&self, most: f64, weighted: bool) -> Self {
+        let mut kept = Self { offsets: vec![0], upper: Vec::new(), weights: None, vertex_weights: None };
+        let mut weights = Vec::new();
+        for vertex in 0..self.num_vertices() {
+            for edge in self.edges_of(vertex).filter(|&edge| self.weight(edge) <= most) {
+                kept.upper.push(self.upper[edge]);
+                weights.extend(weighted.then(|| self.weight(edge)));
+            }
+            kept.offsets.push(kept.upper.len());
+        }
+        kept.weights = weighted.then_some(weights);
+        kept
+    }
+
     /// The same graph with weights at the vertices, each at most the weights of its edges.
     ///
     /// # Errors
@@ -232,6 +249,7 @@ impl Graph {
     }
 }
 
-fn check_vertices(count: usize) -> Result<(), GraphError> {
+/// Refuses more vertices than 32-bit numbers tell apart.
+pub(crate) fn check_vertices(count: usize) -> Result<(), GraphError> {
     u32::try_from(count).ok().filter(|&count| count < u32::MAX).map(|_| ()).ok_or(GraphError::TooManyVertices(count))
 }

@@ -8,6 +8,9 @@
 //! | read meshes and lists of simplices | [`io`] | [`io::read_path`], [`io::merge`](io::merge()) |
 //! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
 //! | arrays in canonical order | [`mod@build`] | [`build::build`] |
+//! | read points, distances, graphs | [`io::space`] | [`io::space::read_space_path`] |
+//! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
+//! | a few of many points | [`subsample`] | [`subsample::farthest_points`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | what `sig info` says of a complex | [`analysis`] | [`analysis::Analysis`] |

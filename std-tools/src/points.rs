@@ -95,6 +95,12 @@ impl Points {
         Self { dim: self.dim, values: indices.iter().flat_map(|&index| self.point(index)).copied().collect() }
     }
 
+    /// The numbers of the points along a Hilbert curve through their first three coordinates, ties by number.
+    #[must_use]
+    pub fn hilbert_order(&self) -> Vec<usize> {
+        crate::build::hilbert_order(self)
+    }
+
     /// The points as the coordinates of vertices.
     #[must_use]
     pub fn into_coordinates(self) -> Coordinates {

@@ -29,6 +29,7 @@ use crate::soup::{Coordinates, Labels, Soup};
 pub(crate) use limits::available_memory;
 use limits::{Limit, Meter, Reservation};
 pub(crate) use lists::pack;
+pub(crate) use order::hilbert_order;
 use order::number_vertices;
 pub use report::BuildReport;
 

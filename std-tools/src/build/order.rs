@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 
 use crate::build::{BuildError, VertexOrder};
+use crate::points::Points;
 use crate::soup::{Coordinates, Labels, Scalars};
 
 /// The number of a vertex that is not in the complex.
@@ -109,7 +110,10 @@ pub(crate) fn number_vertices(
     match (order, coordinates) {
         (VertexOrder::Input, _) | (VertexOrder::Auto, None) => {}
         (VertexOrder::Hilbert, None) => return Err(BuildError::NoCoordinates),
-        (VertexOrder::Auto | VertexOrder::Hilbert, Some(coordinates)) => sort_along_curve(&mut inputs, coordinates),
+        (VertexOrder::Auto | VertexOrder::Hilbert, Some(Coordinates { dim, values })) => match values {
+            Scalars::F32(values) => sort_along_curve(&mut inputs, *dim, |at| f64::from(values[at])),
+            Scalars::F64(values) => sort_along_curve(&mut inputs, *dim, |at| values[at]),
+        },
         (VertexOrder::Rcm, _) => {
             let ids = invert(&inputs, used.len());
             let ranks = reverse_cuthill_mckee(inputs.len(), simplices, &ids);
@@ -132,15 +136,19 @@ fn invert(inputs: &[u32], count: usize) -> Vec<u32> {
 /// Bits a coordinate on the curve; three of them fill a 63-bit key.
 const CURVE_BITS: u32 = 21;
 
-/// Stable sort by position on the Hilbert curve through the bounding cube of the first three coordinates.
-fn sort_along_curve(inputs: &mut Vec<u32>, Coordinates { dim, values }: &Coordinates) {
-    let axes = (*dim).min(3);
+/// The numbers of points along the Hilbert curve, ties by number.
+pub(crate) fn hilbert_order(points: &Points) -> Vec<usize> {
+    let mut order: Vec<u32> = (0..crate::build::narrow(points.len())).collect();
+    sort_along_curve(&mut order, points.dim(), |at| points.values()[at]);
+    order.into_iter().map(|point| point as usize).collect()
+}
+
+/// Stable sort by position on the Hilbert curve through the bounding cube of the first three of `dim` coordinates;
+/// `value` is a coordinate by its place in the table.
+fn sort_along_curve(inputs: &mut Vec<u32>, dim: usize, value: impl Fn(usize) -> f64 + Sync) {
+    let axes = dim.min(3);
     let at = |input: u32, axis: usize| {
-        let row = input as usize * dim + axis;
-        let value = match values {
-            Scalars::F32(values) => f64::from(values[row]),
-            Scalars::F64(values) => values[row],
-        };
+        let value = value(input as usize * dim + axis);
         // A point that is nowhere has to stand somewhere.
         if value.is_finite() { value } else { 0.0 }
     };

@@ -14,6 +14,7 @@ mod man;
 mod output;
 mod progress;
 mod query;
+mod rips;
 mod verify;
 mod witness;
 
@@ -35,6 +36,7 @@ struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   sig build bunny.off -o bunny.sigc     a mesh becomes a complex with all its relations
+  sig rips cloud.npy -r 0.3 -o c.sigc   the Rips complex of points
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
   sig verify bunny.sigc                 whether it is whole and right
@@ -46,6 +48,7 @@ interrupted, and 128 and its number for other signals.";
 #[derive(Subcommand)]
 enum Command {
     Build(build::Args),
+    Rips(rips::Args),
     Witness(witness::Args),
     Info(info::Args),
     Query(query::Args),
@@ -59,6 +62,7 @@ impl Command {
     fn run(self) -> anyhow::Result<()> {
         match self {
             Self::Build(args) => args.run(),
+            Self::Rips(args) => args.run(),
             Self::Witness(args) => args.run(),
             Self::Info(args) => args.run(),
             Self::Query(args) => args.run(),

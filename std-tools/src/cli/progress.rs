@@ -32,7 +32,7 @@ pub(super) fn bytes(length: Option<u64>, name: &str) -> ProgressBar {
 
 /// Bars for the phases of building, one after the other.
 pub(super) struct Phases {
-    current: Mutex<Option<(Phase, ProgressBar)>>,
+    current: Mutex<Option<(&'static str, ProgressBar)>>,
 }
 
 impl Phases {
@@ -40,23 +40,28 @@ impl Phases {
         Self { current: Mutex::new(None) }
     }
 
-    /// Shows how far a phase is.
+    /// Shows how far a phase of the builder is.
     pub(super) fn show(&self, phase: Phase, done: u64, total: u64) {
+        let what = match phase {
+            Phase::Words => "sorting simplices",
+            Phase::Levels => "finding faces",
+            Phase::Boundary => "boundary relations",
+            Phase::Coboundary => "partial co-boundaries",
+            _ => "building",
+        };
+        self.step(what, done, total);
+    }
+
+    /// Shows how far the work is that is called `what`.
+    pub(super) fn step(&self, what: &'static str, done: u64, total: u64) {
         let Ok(mut current) = self.current.lock() else { return };
         match &*current {
-            Some((shown, bar)) if *shown == phase => bar.set_position(done),
+            Some((shown, bar)) if *shown == what => bar.set_position(done),
             _ => {
                 if let Some((_, before)) = current.take() {
                     before.finish_and_clear();
                 }
-                let what = match phase {
-                    Phase::Words => "sorting simplices",
-                    Phase::Levels => "finding faces",
-                    Phase::Boundary => "boundary relations",
-                    Phase::Coboundary => "partial co-boundaries",
-                    _ => "building",
-                };
-                *current = Some((phase, bar(Some(total), "{msg:28!} [{bar:30}] {percent}%", what.to_owned())));
+                *current = Some((what, bar(Some(total), "{msg:28!} [{bar:30}] {percent}%", what.to_owned())));
             }
         }
     }

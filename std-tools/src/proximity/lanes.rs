@@ -43,11 +43,6 @@ impl Lanes {
         Self { metric, dim, values, norms }
     }
 
-    /// The number of blocks; the last may be filled up with the origin.
-    pub(crate) fn num_blocks(&self) -> usize {
-        self.values.len().checked_div(self.dim).unwrap_or(0)
-    }
-
     /// The ranks of a point and the points of a block.
     pub(crate) fn ranks(&self, point: &[f64], block: usize) -> [f64; LANES] {
         self.ranks_within(point, block, f64::INFINITY).unwrap_or([f64::INFINITY; LANES])
@@ -139,7 +134,7 @@ mod tests {
                 let points = cube(count, dim, 7);
                 let lanes = Lanes::new(&points, metric);
                 for i in 0..count {
-                    for block in 0..lanes.num_blocks() {
+                    for block in 0..count.div_ceil(LANES) {
                         let ranks = lanes.ranks(points.point(i), block);
                         for (rank, j) in ranks.into_iter().zip(block * LANES..count) {
                             let distance = metric.distance(points.point(i), points.point(j));

@@ -6,15 +6,17 @@
 mod grid;
 pub(crate) mod lanes;
 
-use crate::graph::{Graph, GraphError};
+use crate::build::available_memory;
+use crate::graph::{Graph, GraphError, check_vertices};
 use crate::points::{Metric, Points};
 
-/// What a radius graph is to hold. The default: edges without weights, as many as there are.
+/// What a radius graph is to hold. The default: edges without weights, as many as memory holds.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct RadiusOptions {
     /// Whether each edge has its length as weight.
     pub weighted: bool,
-    /// The most edges that the graph may have.
+    /// The most edges that the graph may have; as many as the system's available memory holds if `None` and the system
+    /// tells it.
     pub max_edges: Option<usize>,
 }
 
@@ -38,6 +40,9 @@ pub enum ProximityError {
     Graph(#[from] GraphError),
 }
 
+/// Bytes that an edge takes while edges are sorted.
+const EDGE_BYTES: u64 = 12;
+
 /// The graph of all pairs of points at a distance of at most `radius`; points at one place are joined for any radius.
 ///
 /// The edges are exactly those that [`Metric::distance`] gives, for any number of threads. An infinite radius joins all
@@ -56,9 +61,10 @@ pub fn radius_graph(
     if radius.is_nan() || radius < 0.0 {
         return Err(ProximityError::Radius(radius));
     }
-    let limit = options.max_edges.unwrap_or(usize::MAX);
-    // Without vertices too many: the searches number points with 32 bits.
-    Graph::from_edges(points.len(), &[], None)?;
+    let fitting = || available_memory().and_then(|bytes| usize::try_from(bytes / EDGE_BYTES).ok());
+    let limit = options.max_edges.or_else(fitting).unwrap_or(usize::MAX);
+    // The search numbers points with 32 bits.
+    check_vertices(points.len())?;
     let edges = grid::pairs_within(points, metric, radius, limit)
         .map_err(|at_least| ProximityError::TooManyEdges { at_least, limit })?;
     let distance = |a: u32, b: u32| metric.distance(points.point(a as usize), points.point(b as usize));
