@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::ValueEnum;
 use serde::Serialize;
-use sig_core::Dim;
+use sig_core::MAX_DIM;
 use sig_tools::io::ReadError;
 use sig_tools::io::space::{SpaceFormat, SpaceOptions, read_points_path};
 use sig_tools::points::{Metric, Points};
@@ -13,6 +12,7 @@ use sig_tools::witness::{Landmarks, Relaxation, WitnessOptions, witness_complex}
 
 use super::frozen_output::{self, FrozenTarget, Written};
 use super::output::{self, grouped};
+use super::rips::Distance;
 use super::{UsageError, progress};
 
 /// Build the witness complex of landmarks and witnesses
@@ -42,12 +42,12 @@ pub(super) struct Args {
     relaxation: RelaxationArgs,
 
     /// The largest dimension of a simplex
-    #[arg(long, value_name = "K", default_value_t = sig_core::MAX_DIM)]
-    max_dim: Dim,
+    #[arg(short = 'k', long, value_name = "K", default_value_t = 31, value_parser = clap::value_parser!(u8).range(0..=MAX_DIM as i64))]
+    max_dim: u8,
 
     /// The distance
-    #[arg(long, value_enum, default_value_t)]
-    metric: MetricArg,
+    #[arg(short, long, value_enum, default_value_t)]
+    metric: Distance,
 
     /// Keep for each simplex the least relaxation at which it is there, as its filtration value
     #[arg(long)]
@@ -103,31 +103,6 @@ struct RelaxationArgs {
     squared: Option<f64>,
 }
 
-/// The distances by name.
-#[derive(Clone, Copy, Default, ValueEnum)]
-enum MetricArg {
-    /// √Σ (p − q)²
-    #[default]
-    Euclidean,
-    /// max |p − q|
-    Maximum,
-    /// Σ |p − q|
-    Manhattan,
-    /// 1 − the cosine of the angle between p and q
-    Cosine,
-}
-
-impl From<MetricArg> for Metric {
-    fn from(metric: MetricArg) -> Self {
-        match metric {
-            MetricArg::Euclidean => Self::Euclidean,
-            MetricArg::Maximum => Self::Maximum,
-            MetricArg::Manhattan => Self::Manhattan,
-            MetricArg::Cosine => Self::Cosine,
-        }
-    }
-}
-
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let start = Instant::now();
@@ -166,14 +141,10 @@ impl Args {
             let name = if squared.is_some() { "squared" } else { "relax" };
             return Err(UsageError(format!("--{name} {}: a relaxation is 0 or more", relaxation.amount())));
         }
-        if self.max_dim > sig_core::MAX_DIM {
-            let message = format!("--max-dim {}: a complex has dimension {} at most", self.max_dim, sig_core::MAX_DIM);
-            return Err(UsageError(message));
-        }
         Ok(WitnessOptions {
             metric: self.metric.into(),
             relaxation,
-            max_dim: self.max_dim,
+            max_dim: self.max_dim.into(),
             filtration: self.filtration,
             max_simplices: self.max_simplices,
         })

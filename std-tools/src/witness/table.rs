@@ -139,7 +139,8 @@ impl<'a> Search<'a> {
 
     /// The rows of some witnesses.
     fn scan(&self, lanes: &Lanes, points: &[&[f64]], mut rows: Vec<Nearest>) -> Vec<Vec<Near>> {
-        let (blocks, count) = (lanes.num_blocks(), self.landmarks.len());
+        let count = self.landmarks.len();
+        let blocks = count.div_ceil(LANES);
         let tile = blocks_a_tile(self.landmarks.dim() * LANES * size_of::<f64>());
         for start in (0..blocks).step_by(tile) {
             for (row, point) in rows.iter_mut().zip(points) {
