@@ -12,6 +12,7 @@
 //! | a simplex tree to the same arrays | [`mod@build`] | [`build::complete`] |
 //! | read points, distances, graphs | [`io::space`] | [`io::space::read_space_path`] |
 //! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
+//! | witness complexes of points | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
 //! | a few of many points | [`subsample`] | [`subsample::farthest_points`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | contract edges of what is built | [`mod@contract`] | [`contract::contract`] |

@@ -20,6 +20,7 @@ mod query;
 mod tree_input;
 mod rips;
 mod verify;
+mod witness;
 
 use std::io;
 use std::process::ExitCode;
@@ -52,6 +53,7 @@ interrupted, and 128 and its number for other signals.";
 enum Command {
     Build(build::Args),
     Rips(rips::Args),
+    Witness(witness::Args),
     Info(info::Args),
     Query(query::Args),
     Verify(verify::Args),
@@ -68,6 +70,7 @@ impl Command {
         match self {
             Self::Build(args) => args.run(),
             Self::Rips(args) => args.run(),
+            Self::Witness(args) => args.run(),
             Self::Info(args) => args.run(),
             Self::Query(args) => args.run(),
             Self::Verify(args) => args.run(),

@@ -96,8 +96,9 @@ pub(super) struct Args {
     json: bool,
 }
 
+/// The distances by name.
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-enum Distance {
+pub(super) enum Distance {
     /// √Σ (p − q)²
     #[default]
     Euclidean,

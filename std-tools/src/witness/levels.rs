@@ -32,7 +32,7 @@ pub(super) trait Candidate: Copy + Ord + Send + Sync {
     }
 
     fn last(self) -> u32 {
-        narrow((self.key() & u64::from(u32::MAX)) as usize)
+        u32::try_from(self.key() & u64::from(u32::MAX)).unwrap_or(u32::MAX)
     }
 }
 

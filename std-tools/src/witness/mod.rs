@@ -4,7 +4,8 @@
 //! more than ρ: d(w, x) − d(w, y) ≤ ρ for all x ∈ σ and y ∉ σ (Definition 2; for ρ = 0 Definition 1, the strict
 //! witness complex). The complex has the simplices all of whose faces are witnessed. [`witness_complex`] builds it:
 //!
-//! 1. `table` finds the nearest landmarks of every witness, all that is needed of the points;
+//! 1. `table` finds the nearest landmarks of every witness, all that is needed of the points; `sieve` says cheaply which
+//!    are not near;
 //! 2. dimension by dimension, `candidates` finds what the active witnesses witness, and `levels` keeps what has all
 //!    facets in the level below: the arrays of a [`FrozenTree`].
 //!
@@ -21,6 +22,7 @@ mod candidates;
 pub mod insertion;
 pub mod landmarks;
 mod levels;
+mod sieve;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -218,10 +220,10 @@ impl WitnessComplex {
 /// Builds the witness complex of some witnesses and landmarks.
 ///
 /// The same for any number of threads; work runs in rayon's current pool. Time: O(witnesses · landmarks) distances, then
-/// for each dimension j a search along the tree for every pair of an active witness and a j-simplex that it witnesses,
-/// and j searches in short lists for every simplex found so. Memory: per witness the landmarks within the relaxation of
-/// its nearest `max_dim` + 1, 12 bytes each, per simplex 8 bytes and for the last dimension its facets, and 8 bytes for
-/// each simplex that several of about a hundred groups of witnesses witness.
+/// for each dimension j a step along the tree for every pair of an active witness and a j-simplex that it witnesses, and
+/// j searches in short lists for every simplex found so. Memory: for each witness 12 bytes for every landmark within the
+/// relaxation of its nearest `max_dim` + 1; for each simplex 8 bytes, and those of the last dimension their facets; and 8
+/// bytes, 16 with filtration, for each simplex of one dimension and each of 64 groups of witnesses that witness it.
 ///
 /// # Errors
 /// [`WitnessError`]: nothing to choose from, points of different spaces, a relaxation that is none, a complex that is
@@ -258,7 +260,7 @@ struct Construction<'a, C> {
     /// The most simplices, and how many candidates the memory holds.
     limit: u64,
     most_candidates: u64,
-    search: Search,
+    search: Search<'a>,
     /// The nearest landmarks of every active witness, and how many at least.
     table: Table,
     depth: usize,
@@ -280,7 +282,7 @@ struct Active {
 impl<'a, C: Candidate> Construction<'a, C> {
     fn run(
         witnesses: &'a Points,
-        landmarks: &Landmarks,
+        landmarks: &'a Landmarks,
         options: &'a WitnessOptions,
     ) -> Result<WitnessComplex, WitnessError> {
         let scale = Scale { metric: options.metric, relaxation: options.relaxation };
@@ -295,7 +297,7 @@ impl<'a, C: Candidate> Construction<'a, C> {
     fn new(
         witnesses: &'a Points,
         num_landmarks: usize,
-        search: Search,
+        search: Search<'a>,
         options: &'a WitnessOptions,
     ) -> Result<Self, WitnessError> {
         /// Strict complexes seldom reach high dimensions: the table starts with so many columns, and grows for those

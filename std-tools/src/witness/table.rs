@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
-use crate::points::{Metric, Points};
+use crate::points::{Metric, Points, squared_distance};
 use crate::proximity::lanes::{LANES, Lanes, distance_of_rank, largest_rank};
 use crate::witness::Relaxation;
+use crate::witness::sieve::{self, Sieve, View};
 
 /// For each of some witnesses, landmarks by increasing distance, of equal ones the lower number first.
 #[derive(Clone, Debug, Default)]
@@ -67,15 +68,27 @@ impl Near {
 }
 
 /// Distances from landmarks, in the convention of a relaxation.
-pub(super) struct Search {
-    lanes: Lanes,
-    count: usize,
+pub(super) struct Search<'a> {
+    landmarks: &'a Points,
     scale: Scale,
+    blocks: Blocks,
 }
 
-impl Search {
-    pub(super) fn new(landmarks: &Points, scale: Scale) -> Self {
-        Self { lanes: Lanes::new(landmarks, scale.metric), count: landmarks.len(), scale }
+/// Landmarks as they are looked at.
+enum Blocks {
+    /// For the Euclidean distance.
+    Sieve(Sieve),
+    /// For others.
+    Lanes(Lanes),
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(landmarks: &'a Points, scale: Scale) -> Self {
+        let blocks = match scale.metric {
+            Metric::Euclidean => Blocks::Sieve(Sieve::new(landmarks)),
+            metric => Blocks::Lanes(Lanes::new(landmarks, metric)),
+        };
+        Self { landmarks, scale, blocks }
     }
 
     /// For each of the given witnesses, the `depth` nearest landmarks and all others that are farther than the last of
@@ -86,29 +99,66 @@ impl Search {
     pub(super) fn nearest(&self, points: &Points, witnesses: &[u32], depth: usize) -> Table {
         /// Witnesses a task.
         const WITNESSES: usize = 64;
-        let rows: Vec<Vec<Vec<Near>>> =
-            witnesses.par_chunks(WITNESSES).map(|witnesses| self.rows(points, witnesses, depth)).collect();
+        let rows = |witnesses: &[u32]| {
+            let points: Vec<&[f64]> = witnesses.iter().map(|&witness| points.point(witness as usize)).collect();
+            let rows = vec![Nearest::new(depth, self.scale); points.len()];
+            match &self.blocks {
+                Blocks::Sieve(sieve) => self.sift(sieve, &points, rows),
+                Blocks::Lanes(lanes) => self.scan(lanes, &points, rows),
+            }
+        };
+        let rows: Vec<Vec<Vec<Near>>> = witnesses.par_chunks(WITNESSES).map(rows).collect();
         Table::of_rows(rows.into_iter().flatten())
     }
 
-    fn rows(&self, points: &Points, witnesses: &[u32], depth: usize) -> Vec<Vec<Near>> {
-        /// Bytes of coordinates in a tile.
-        const TILE: usize = 1 << 14;
-        let blocks = self.lanes.num_blocks();
-        let tile = (TILE / (size_of::<f64>() * LANES * points.dim().max(1))).max(1);
-        let mut rows = vec![Nearest::new(depth, self.scale); witnesses.len()];
+    /// The rows of some witnesses, where the sieve says which landmarks are looked at.
+    fn sift(&self, sieve: &Sieve, points: &[&[f64]], mut rows: Vec<Nearest>) -> Vec<Vec<Near>> {
+        let blocks = sieve.num_blocks();
+        let tile = blocks_a_tile(self.landmarks.dim() * sieve::WIDTH * size_of::<f32>());
+        let views: Vec<View> = points.iter().map(|point| sieve.view(point)).collect();
         for start in (0..blocks).step_by(tile) {
-            for (row, &witness) in rows.iter_mut().zip(witnesses) {
-                let point = points.point(witness as usize);
+            for ((row, view), point) in rows.iter_mut().zip(&views).zip(points) {
+                let mut bound = sieve.bound(view, row.bound);
                 for block in start..blocks.min(start + tile) {
-                    if let Some(ranks) = self.lanes.ranks_within(point, block, row.bound) {
-                        row.offer(block * LANES, &ranks[..LANES.min(self.count - block * LANES)]);
+                    let mut near = sieve.near(view, block, bound);
+                    while near != 0 {
+                        let landmark = block * sieve::WIDTH + near.trailing_zeros() as usize;
+                        near &= near - 1;
+                        if landmark < self.landmarks.len() {
+                            row.offer(landmark, &[squared_distance(point, self.landmarks.point(landmark))]);
+                        }
+                        if near == 0 {
+                            bound = sieve.bound(view, row.bound);
+                        }
                     }
                 }
             }
         }
         rows.into_iter().map(Nearest::finish).collect()
     }
+
+    /// The rows of some witnesses.
+    fn scan(&self, lanes: &Lanes, points: &[&[f64]], mut rows: Vec<Nearest>) -> Vec<Vec<Near>> {
+        let count = self.landmarks.len();
+        let blocks = count.div_ceil(LANES);
+        let tile = blocks_a_tile(self.landmarks.dim() * LANES * size_of::<f64>());
+        for start in (0..blocks).step_by(tile) {
+            for (row, point) in rows.iter_mut().zip(points) {
+                for block in start..blocks.min(start + tile) {
+                    if let Some(ranks) = lanes.ranks_within(point, block, row.bound) {
+                        row.offer(block * LANES, &ranks[..LANES.min(count - block * LANES)]);
+                    }
+                }
+            }
+        }
+        rows.into_iter().map(Nearest::finish).collect()
+    }
+}
+
+/// Blocks of so many bytes that together stay in the nearest cache.
+fn blocks_a_tile(bytes: usize) -> usize {
+    const TILE: usize = 1 << 14;
+    (TILE / bytes.max(1)).max(1)
 }
 
 /// What a distance is in a table.
@@ -157,7 +207,7 @@ struct Nearest {
 
 impl Nearest {
     fn new(depth: usize, scale: Scale) -> Self {
-        Self { depth, scale, bound: f64::INFINITY, seen: Vec::new(), room: 2 * depth + LANES }
+        Self { depth, scale, bound: f64::INFINITY, seen: Vec::new(), room: 2 * depth.max(4) }
     }
 
     /// Takes the landmarks from number `first` on that are not too far.
@@ -189,5 +239,59 @@ impl Nearest {
         self.drop_far();
         self.seen.sort_unstable_by(Near::order);
         self.seen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::cube;
+
+    /// All landmarks sorted, and cut as the definition of a row says.
+    fn by_sorting(point: &[f64], landmarks: &Points, scale: Scale, depth: usize) -> Vec<Near> {
+        let distance = |landmark| {
+            let distance = scale.metric.distance(point, landmarks.point(landmark));
+            let square = match scale.metric {
+                Metric::Euclidean => squared_distance(point, landmarks.point(landmark)),
+                _ => distance * distance,
+            };
+            if matches!(scale.relaxation, Relaxation::Squared(_)) { square } else { distance }.min(f64::MAX)
+        };
+        let near = |landmark| Near { distance: distance(landmark), landmark: crate::build::narrow(landmark) };
+        let mut row: Vec<Near> = (0..landmarks.len()).map(near).collect();
+        row.sort_by(Near::order);
+        let last = row[depth.min(row.len()) - 1].distance;
+        row.retain(|near| near.distance - last <= scale.relaxation.amount());
+        row
+    }
+
+    /// Near zero, far from the origin, tiny and huge, where single precision underflows and overflows.
+    #[test]
+    fn rows_are_those_of_a_sort_at_any_place_and_size() {
+        let unit = cube(150, 3, 5);
+        for (factor, offset) in
+            [(1.0, 0.0), (1.0, 1e6), (1e-3, 1e8), (1e-25, 0.0), (1e-170, 0.0), (1e25, 0.0), (1e200, 0.0)]
+        {
+            let values: Vec<f64> = unit.values().iter().map(|value| offset + factor * value).collect();
+            let points = Points::new(3, values).unwrap();
+            let landmarks = points.select(&(0..90).collect::<Vec<_>>());
+            let witnesses: Vec<u32> = (0..150).collect();
+            for metric in [Metric::Euclidean, Metric::Maximum, Metric::Cosine] {
+                for amount in [0.0, 0.05] {
+                    let squared = Relaxation::Squared((amount * factor) * factor);
+                    for relaxation in [Relaxation::Distance(amount * factor), squared] {
+                        let scale = Scale { metric, relaxation };
+                        for depth in [1, 4, 200] {
+                            let table = Search::new(&landmarks, scale).nearest(&points, &witnesses, depth);
+                            for witness in 0..150 {
+                                let row: Vec<Near> = table.row(witness).iter().collect();
+                                let expected = by_sorting(points.point(witness), &landmarks, scale, depth);
+                                assert_eq!(row, expected, "{scale:?} {factor} {offset} {depth} {witness}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
 }
