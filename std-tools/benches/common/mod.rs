@@ -8,8 +8,11 @@ pub(crate) mod chart;
 
 use std::error::Error;
 use std::ffi::OsStr;
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
+
+use sig_tools::points::Points;
 
 /// The arguments of a benchmark: without the one that cargo adds.
 pub(crate) fn arguments() -> Vec<String> {
@@ -72,4 +75,13 @@ pub(crate) fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().trim_end_matches(" kB").parse::<f64>().ok()? * 1024.0)
+}
+
+/// Writes points as the peers' programs read them: "PTS1", the dimension, the number, the coordinates, little-endian.
+pub(crate) fn write_points(points: &Points, path: &Path) -> Result<(), Box<dyn Error>> {
+    let mut bytes = b"PTS1".to_vec();
+    bytes.extend(u32::try_from(points.dim())?.to_le_bytes());
+    bytes.extend((points.len() as u64).to_le_bytes());
+    bytes.extend(points.values().iter().flat_map(|value| value.to_le_bytes()));
+    Ok(std::fs::write(path, bytes)?)
 }
