@@ -76,8 +76,10 @@ const CASES: [Case; 4] = [
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     println!("medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
-    if let [path, step, relaxation, max_dim] = arguments.as_slice() {
-        return own_points(path.as_ref(), step.parse()?, relaxation.parse()?, max_dim.parse()?);
+    if let [path, step, relaxation, max_dim] = arguments.as_slice()
+        && let Ok(step) = step.parse()
+    {
+        return own_points(path.as_ref(), step, relaxation.parse()?, max_dim.parse()?);
     }
     let wanted = |name: &str| arguments.is_empty() && name != "sphere-large" || arguments.iter().any(|it| it == name);
     for case in CASES.iter().filter(|case| wanted(case.name)) {

@@ -40,7 +40,7 @@ use crate::points::{Metric, Points, PointsError};
 use candidates::{ABSENT, Finder, Found, Memory, Outcome, Pointer};
 pub use landmarks::Landmarks;
 use levels::{Candidate, Levels};
-use table::{Scale, Search, Table};
+use table::{Row, Scale, Search, Table};
 
 /// How much farther a landmark of a simplex may be from a witness than one that is left out.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -307,39 +307,27 @@ impl<'a, C: Candidate> Construction<'a, C> {
         let depth = if relaxation == 0.0 { FIRST_DEPTH.min(most) } else { most };
         let all: Vec<u32> = (0..narrow(witnesses.len())).collect();
         let table = search.nearest(witnesses, &all, depth);
-        let (mut values, mut active) = (vec![f64::INFINITY; num_landmarks], Vec::with_capacity(all.len()));
-        for &witness in &all {
-            let row = table.row(witness as usize);
-            let (nearest, width) = (row.distances[0], row.width(0, relaxation));
-            for near in row.iter().take(width) {
-                let value = &mut values[near.landmark as usize];
-                *value = value.min(near.distance - nearest);
-            }
-            active.push(Active { witness, row: witness, pointer: Pointer::Several });
-        }
-        let mut count = 0;
-        let mut vertex_of = |value: &f64| {
-            let vertex = if value.is_finite() { count } else { ABSENT };
-            count += u32::from(value.is_finite());
-            vertex
+        let rows = || all.iter().map(|&witness| table.row(witness as usize));
+        let mut values = least_relaxations(rows(), num_landmarks, relaxation);
+        let vertices = number_finite(&values);
+        let pointer = |row: Row<'_>| match row.width(0, relaxation) {
+            1 => Pointer::One(vertices[row.landmarks[0] as usize]),
+            _ => Pointer::Several,
         };
-        let vertices: Vec<u32> = values.iter().map(&mut vertex_of).collect();
-        for active in &mut active {
-            let row = table.row(active.row as usize);
-            if row.width(0, relaxation) == 1 {
-                active.pointer = Pointer::One(vertices[row.landmarks[0] as usize]);
-            }
-        }
-        let (at_least, limit) = (u64::from(count), options.limit());
+        let active =
+            all.iter().zip(rows()).map(|(&witness, row)| Active { witness, row: witness, pointer: pointer(row) });
+        let active = active.collect();
+        values.retain(|value| value.is_finite());
+        let count = values.len();
+        let (at_least, limit) = (count as u64, options.limit());
         if at_least > limit {
             return Err(WitnessError::TooLarge { at_least, limit });
         }
-        let crowd = all.iter().map(|&witness| table.row(witness as usize).width(0, relaxation)).max();
+        let crowd = rows().map(|row| row.width(0, relaxation)).max();
         refuse_crowd(crowd.unwrap_or(0), options.max_dim, limit)?;
         // They are gathered once more before they are looked at.
         let most_candidates = available_memory().map_or(u64::MAX, |bytes| bytes / (2 * size_of::<C>() as u64));
-        values.retain(|value| C::WITH_VALUE && value.is_finite());
-        let levels = Levels::new(count as usize, values);
+        let levels = Levels::new(count, if C::WITH_VALUE { values } else { Vec::new() });
         Ok(Self {
             witnesses,
             options,
@@ -413,6 +401,24 @@ impl<'a, C: Candidate> Construction<'a, C> {
             active.row = row;
         }
     }
+}
+
+/// For each landmark the least relaxation at which some witness witnesses it, or infinity if it is more than the given one.
+fn least_relaxations<'a>(rows: impl Iterator<Item = Row<'a>>, num_landmarks: usize, relaxation: f64) -> Vec<f64> {
+    let mut values = vec![f64::INFINITY; num_landmarks];
+    for row in rows {
+        for near in row.iter().take(row.width(0, relaxation)) {
+            let value = &mut values[near.landmark as usize];
+            *value = value.min(near.distance - row.distances[0]);
+        }
+    }
+    values
+}
+
+/// The vertices of the landmarks with a finite value, numbered in their order; [`ABSENT`] for the others.
+fn number_finite(values: &[f64]) -> Vec<u32> {
+    let mut next = 0..ABSENT;
+    values.iter().map(|value| if value.is_finite() { next.next().unwrap_or(ABSENT) } else { ABSENT }).collect()
 }
 
 /// Refuses, before they are looked for, more simplices than are allowed: of a crowd of landmarks that are all nearest to
