@@ -34,6 +34,7 @@
 pub mod analysis;
 pub mod build;
 pub mod export;
+pub mod flag;
 pub mod frozen;
 pub mod generate;
 pub mod graph;

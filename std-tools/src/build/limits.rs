@@ -83,7 +83,7 @@ fn bytes_per_face(dim: Dim, count: u64) -> u64 {
 }
 
 /// The memory that the system says is available; `None` if it says nothing.
-fn available_memory() -> Option<u64> {
+pub(crate) fn available_memory() -> Option<u64> {
     let info = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = info.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)

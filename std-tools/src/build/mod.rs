@@ -26,6 +26,7 @@ use sig_core::{Dim, Index};
 
 use crate::soup::{Coordinates, Labels, Soup};
 
+pub(crate) use limits::available_memory;
 use limits::{Limit, Meter, Reservation};
 pub(crate) use lists::pack;
 use order::number_vertices;
