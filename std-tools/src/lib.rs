@@ -25,7 +25,7 @@
 //! let file = store::Encoding::new(&built, &store::EncodeOptions::default())?;
 //! atomic::write(&out, atomic::Existing::Refuse, |out| file.write_to(out))?;
 //! let map = Mapped::open(&out)?;
-//! assert_eq!(sig_core::with_complex!(map.complex(), complex => complex.num_simplices()), 7);
+//! assert_eq!(sig_core::with_complex!(map.complex()?, complex => complex.num_simplices()), 7);
 //! # assert_eq!(report.vertices, 3);
 //! # Ok(())
 //! # }
@@ -46,7 +46,7 @@ pub mod soup;
 pub mod store;
 pub mod tops;
 
-pub use store::{Loaded, Mapped, OwnedScratch};
+pub use store::{Loaded, Mapped, OwnedScratch, View};
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

@@ -100,7 +100,7 @@ fn of_a_book_of_many_pages() {
     let built = build(soup, &BuildOptions::default()).unwrap();
     let file = Loaded::from_file_bytes(Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap());
     let file = file.unwrap();
-    let AnyComplex::Bits32(complex) = file.complex() else { panic!("32 bits") };
+    let AnyComplex::Bits32(complex) = file.complex().unwrap() else { panic!("32 bits") };
     let pages = PAGES as usize;
     let mut memory = OwnedScratch::new(&complex);
     let mut scratch = memory.scratch();

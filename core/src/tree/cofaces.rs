@@ -150,10 +150,10 @@ impl<I: Index> Tree<'_, I> {
         scratch: &mut Scratch<'_, I>,
     ) -> Result<(), ScratchError> {
         let path = self.path(simplex);
-        let Some(more) = (dim + 1).checked_sub(path.len()).filter(|&more| more > 0) else { return Ok(()) };
-        if dim >= self.levels.dims() {
+        if dim >= self.levels.dims() || dim < path.len() || path.is_empty() {
             return Ok(());
         }
+        let more = dim + 1 - path.len();
         let Scratch { queue, found, .. } = scratch;
         queue.clear();
         self.common_neighbours(&path, queue)?;

@@ -225,7 +225,7 @@ impl<'a, I: Index> Tree<'a, I> {
     /// The children of a node of dimension `dim`.
     #[inline]
     fn child_range(&self, dim: Dim, node: usize) -> Range<usize> {
-        self.children_of(dim, node..node + 1)
+        self.children_of(dim, node..node.saturating_add(1))
     }
 
     /// The children of consecutive nodes of dimension `dim`, which are consecutive too.

@@ -9,6 +9,7 @@ mod bytes;
 mod encode;
 mod mapped;
 mod scratch;
+mod view;
 #[cfg(test)]
 mod tests;
 pub mod verify;
@@ -17,3 +18,4 @@ pub use bytes::AlignedBytes;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
 pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
 pub use scratch::OwnedScratch;
+pub use view::View;
