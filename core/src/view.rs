@@ -1,12 +1,15 @@
 //! What the views of a file have in common: numbers of simplices, columns beside the relations, and [`Relations`], through
 //! which code that works on any of them asks.
 
+use core::cmp::Ordering;
+
 use crate::complex::SimplexRange;
 use crate::complex::columns::Labels;
 use crate::format::{Column, Section};
 use crate::id::{Dim, Index, SimplexId, VertexId};
 use crate::relations::Simplices;
 use crate::scratch::{Scratch, ScratchError};
+use crate::tree::DepthFirst;
 
 /// The methods of a view over `container` and `levels`, fields of the type.
 macro_rules! common_methods {
@@ -264,6 +267,41 @@ pub trait Relations {
 
     /// The filtration value of each simplex.
     fn filtration(&self) -> Option<&[f64]>;
+
+    /// All simplices, each before its children in the simplex tree and these before its next sibling: the lexicographic
+    /// order of the words.
+    ///
+    /// Cost: [`children`](Self::children) for each simplex, no memory but the way down. By dimension they come from
+    /// [`simplices`](Self::simplices).
+    fn depth_first(&self) -> DepthFirst<'_, Self>
+    where
+        Self: Sized,
+    {
+        DepthFirst::new(self)
+    }
+
+    /// All simplices by (filtration value, dimension, lexicographic order of the words), in `order`, which has room for
+    /// them: each comes after its faces. By (dimension, word) where there are no filtration values.
+    ///
+    /// Cost: a sort in place.
+    ///
+    /// # Errors
+    /// [`ScratchError::Found`] if `order` is shorter than the number of simplices.
+    fn filtration_order<'o>(&self, order: &'o mut [Self::Index]) -> Result<Simplices<'o, Self::Index>, ScratchError> {
+        let (available, at_least) = (order.len(), self.num_simplices());
+        let order = order.get_mut(..at_least).ok_or(ScratchError::Found { at_least, available })?;
+        for (slot, id) in order.iter_mut().zip(0..) {
+            *slot = Self::Index::from_usize(id).unwrap_or(Self::Index::STOP);
+        }
+        if let Some(values) = self.filtration() {
+            let value = |id: &Self::Index| values.get(id.to_usize());
+            order.sort_unstable_by(|left, right| {
+                let values = value(left).zip(value(right));
+                values.map_or(Ordering::Equal, |(left, right)| left.total_cmp(right)).then(left.cmp(right))
+            });
+        }
+        Ok(Simplices::new(order))
+    }
 }
 
 /// Implements [`Relations`] by the type's own methods of the same names.

@@ -11,6 +11,7 @@
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | what `sig info` says of a complex | [`analysis`] | [`analysis::Analysis`] |
+//! | insert, remove, collapse, contract, expand | [`mod@simplex_tree`] | [`simplex_tree::SimplexTree`] |
 //! | simplices by the input's labels | [`names`], [`tops`] | [`names::find_simplex`] |
 //! | write meshes and lists | [`export`] | [`export::export`](export::export()) |
 //!
@@ -42,6 +43,7 @@ pub mod incidence_graph;
 pub mod io;
 pub mod names;
 pub mod points;
+pub mod simplex_tree;
 pub mod soup;
 pub mod store;
 pub mod tops;

@@ -35,6 +35,10 @@ impl<'a, I: Index> Complex<'a, I> {
         let pointers = levels.num_pointers();
         let boundary = sections.indices(SectionKind::Boundary, Some(levels.num_boundary()))?;
         let has_tree = sections.both([SectionKind::ChildOffsets, SectionKind::LastVertices])?;
+        if !has_tree && sections.both([SectionKind::LowerOffsets, SectionKind::LowerNeighbours])? {
+            // Of no use without the tree that they speak of.
+            return Err(FormatError::MissingSection(SectionKind::ChildOffsets));
+        }
         let complex = Self {
             container,
             levels,

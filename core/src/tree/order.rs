@@ -1,68 +1,36 @@
-//! The simplices in other orders than that of their ids: depth-first, and by filtration value.
-
-use core::cmp::Ordering;
-use core::ops::Range;
+//! The simplices depth first: the lexicographic order of the words.
 
 use heapless::Vec;
 
-use super::Tree;
-use crate::id::{Index, MAX_DIM, SimplexId};
-use crate::relations::Simplices;
-use crate::scratch::ScratchError;
+use crate::complex::SimplexRange;
+use crate::id::{MAX_DIM, SimplexId};
+use crate::view::Relations;
 
-impl<'a, I: Index> Tree<'a, I> {
-    /// All simplices, each before its children and these before its next sibling: the lexicographic order of the words.
-    ///
-    /// Cost: two reads a simplex, no memory but the way down. By dimension they come from
-    /// [`simplices`](Self::simplices).
-    #[must_use]
-    pub fn depth_first(&self) -> DepthFirst<'_, 'a, I> {
-        let mut levels = Vec::new();
-        let _ = levels.push(self.levels.ids(0));
-        DepthFirst { tree: self, levels, left: self.num_simplices() }
-    }
-
-    /// All simplices by (filtration value, dimension, lexicographic order of the words), in `order`, which has room for
-    /// them: each comes after its faces. By (dimension, word) where the file has no filtration values.
-    ///
-    /// Cost: a sort in place.
-    ///
-    /// # Errors
-    /// [`ScratchError::Found`] if `order` is shorter than the number of simplices.
-    pub fn filtration_order<'o>(&self, order: &'o mut [I]) -> Result<Simplices<'o, I>, ScratchError> {
-        let (available, at_least) = (order.len(), self.num_simplices());
-        let order = order.get_mut(..at_least).ok_or(ScratchError::Found { at_least, available })?;
-        for (slot, id) in order.iter_mut().zip(0..) {
-            *slot = I::from_usize(id).unwrap_or(I::STOP);
-        }
-        if let Some(values) = self.filtration() {
-            let value = |id: &I| values.get(id.to_usize());
-            order.sort_unstable_by(|left, right| {
-                let by_value = value(left).zip(value(right)).map_or(Ordering::Equal, |(left, right)| left.total_cmp(right));
-                by_value.then(left.cmp(right))
-            });
-        }
-        Ok(Simplices::new(order))
-    }
-}
-
-/// All simplices, depth first: see [`Tree::depth_first`].
+/// All simplices, depth first: see [`Relations::depth_first`].
 #[derive(Clone, Debug)]
-pub struct DepthFirst<'v, 'a, I> {
-    tree: &'v Tree<'a, I>,
+pub struct DepthFirst<'v, V> {
+    view: &'v V,
     /// The siblings that are still to be visited, of each dimension on the way.
-    levels: Vec<Range<usize>, { MAX_DIM + 1 }>,
+    levels: Vec<SimplexRange, { MAX_DIM + 1 }>,
     left: usize,
 }
 
-impl<I: Index> Iterator for DepthFirst<'_, '_, I> {
+impl<'v, V: Relations> DepthFirst<'v, V> {
+    pub(crate) fn new(view: &'v V) -> Self {
+        let mut levels = Vec::new();
+        let _ = levels.push(view.simplices_of_dim(0));
+        Self { view, levels, left: view.num_simplices() }
+    }
+}
+
+impl<V: Relations> Iterator for DepthFirst<'_, V> {
     type Item = SimplexId;
 
     fn next(&mut self) -> Option<Self::Item> {
         self.left = self.left.checked_sub(1)?;
         loop {
             let Some(siblings) = self.levels.last_mut() else {
-                // Only in a buffer that is not a tree: simplices that are nobody's children.
+                // Only in a buffer that is not a complex: simplices that are nobody's children.
                 self.left = 0;
                 return None;
             };
@@ -70,12 +38,12 @@ impl<I: Index> Iterator for DepthFirst<'_, '_, I> {
                 self.levels.pop();
                 continue;
             };
-            // Empty at the last dimension, so never full.
-            let children = self.tree.child_range(self.levels.len() - 1, node);
-            if !children.is_empty() {
+            let children = self.view.children(node);
+            if children.len() > 0 {
+                // Never full: those of the last dimension are none.
                 let _ = self.levels.push(children);
             }
-            return Some(SimplexId::new(node));
+            return Some(node);
         }
     }
 
@@ -84,5 +52,5 @@ impl<I: Index> Iterator for DepthFirst<'_, '_, I> {
     }
 }
 
-impl<I: Index> ExactSizeIterator for DepthFirst<'_, '_, I> {}
-impl<I: Index> core::iter::FusedIterator for DepthFirst<'_, '_, I> {}
+impl<V: Relations> ExactSizeIterator for DepthFirst<'_, V> {}
+impl<V: Relations> core::iter::FusedIterator for DepthFirst<'_, V> {}

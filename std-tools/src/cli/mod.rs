@@ -5,14 +5,20 @@
 //! number if a signal ends the work.
 
 mod build;
+mod collapse;
 mod completions;
+mod contract;
+mod expand;
 mod export;
+mod frozen_output;
 mod info;
 mod input;
 mod man;
 mod output;
 mod progress;
 mod query;
+mod tree;
+mod tree_input;
 mod verify;
 
 use std::io;
@@ -48,6 +54,10 @@ enum Command {
     Query(query::Args),
     Verify(verify::Args),
     Export(export::Args),
+    Expand(expand::Args),
+    Collapse(collapse::Args),
+    Contract(contract::Args),
+    Tree(tree::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -60,6 +70,10 @@ impl Command {
             Self::Query(args) => args.run(),
             Self::Verify(args) => args.run(),
             Self::Export(args) => args.run(),
+            Self::Expand(args) => args.run(),
+            Self::Collapse(args) => args.run(),
+            Self::Contract(args) => args.run(),
+            Self::Tree(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Man(args) => args.run(),
         }

@@ -150,6 +150,9 @@ pub enum ErrorKind {
         /// The number found.
         found: u64,
     },
+    /// A rule that the input as a whole keeps is broken here.
+    #[error("{0}")]
+    Rule(Cow<'static, str>),
     /// A variant of a format that is not read, and what to do instead.
     #[error("{0}")]
     Unsupported(Cow<'static, str>),

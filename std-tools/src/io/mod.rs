@@ -10,6 +10,7 @@
 mod cone;
 mod detect;
 mod error;
+pub(crate) mod gudhi;
 mod intake;
 mod labels;
 mod merge;
