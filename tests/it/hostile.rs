@@ -153,6 +153,7 @@ fn damaged_headers_and_tables() {
         let mut bytes = originals[random.below(originals.len())].clone();
         for _ in 0..=random.below(2) {
             let entries = Container::from_bytes(&bytes).map_or(5, |container| container.header().sections) as usize;
+            let entries = entries.min((bytes.len() - HEADER_BYTES) / ENTRY_BYTES);
             let (at, size) = match random.below(3) {
                 0 => [(14, 2), (18, 1), (20, 4), (24, 8), (32, 8), (32, 1), (44, 4)][random.below(7)],
                 _ => {
