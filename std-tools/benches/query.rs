@@ -63,8 +63,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("µs a query, medians of {ROUNDS} rounds over {SAMPLE} random simplices; GUDHI's time over ours");
     println!("query       dim      tree       SIG     GUDHI   / tree    / SIG");
     for (key, samples) in &of_tree {
-        let [ours, sig, theirs] = [Some(samples), of_sig.get(key), of_peer.get(key)].map(|samples| median(samples) * 1e6);
-        println!("{:<10} {:>4} {ours:9.3} {sig:9.3} {theirs:9.3} {:8.1} {:8.1}", key.0, key.1, theirs / ours, theirs / sig);
+        let [ours, sig, theirs] =
+            [Some(samples), of_sig.get(key), of_peer.get(key)].map(|samples| median(samples) * 1e6);
+        println!(
+            "{:<10} {:>4} {ours:9.3} {sig:9.3} {theirs:9.3} {:8.1} {:8.1}",
+            key.0,
+            key.1,
+            theirs / ours,
+            theirs / sig
+        );
     }
     Ok(())
 }
@@ -162,13 +169,26 @@ fn sum<I: Index>(answer: Result<Simplices<'_, I>, ScratchError>) -> usize {
 }
 
 /// Has the peer ask the same queries of random simplices of its own.
-fn ask_peer(program: &Path, points: &Path, radius: &str, max_dim: &str, timings: &mut Timings) -> Result<(), Box<dyn Error>> {
+fn ask_peer(
+    program: &Path,
+    points: &Path,
+    radius: &str,
+    max_dim: &str,
+    timings: &mut Timings,
+) -> Result<(), Box<dyn Error>> {
     let sample = SAMPLE.to_string();
-    let output = Command::new(program).args(["query", "link"]).arg(points).args([radius, max_dim, &sample, "2"]).output()?;
+    let output =
+        Command::new(program).args(["query", "link"]).arg(points).args([radius, max_dim, &sample, "2"]).output()?;
     for line in String::from_utf8(output.stdout)?.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let value = |name: &str| words.iter().find_map(|word| word.strip_prefix(name)?.strip_prefix('='));
-        let names = [("find_hit", "find"), ("vertices", "vertices"), ("boundary", "facets"), ("cofaces1", "cofaces1"), ("star", "star")];
+        let names = [
+            ("find_hit", "find"),
+            ("vertices", "vertices"),
+            ("boundary", "facets"),
+            ("cofaces1", "cofaces1"),
+            ("star", "star"),
+        ];
         let Some(&(_, name)) = names.iter().find(|(peer, _)| words.get(1) == Some(peer)) else { continue };
         let (Some(dim), Some(time)) = (value("dim"), value("us").or_else(|| value("us/simplex"))) else { continue };
         timings.entry((name, dim.parse()?)).or_default().push(time.parse::<f64>()? * 1e-6);

@@ -49,10 +49,9 @@ fn files_are_what_the_format_says() {
 #[test]
 fn trees_are_what_the_format_says() {
     let empty = Oracle::new::<[usize; 0]>(&[]);
-    for (name, oracle, width) in [
-        ("figure-tree-16.sigc", &figure(), IndexWidth::Bits16),
-        ("empty-tree-16.sigc", &empty, IndexWidth::Bits16),
-    ] {
+    for (name, oracle, width) in
+        [("figure-tree-16.sigc", &figure(), IndexWidth::Bits16), ("empty-tree-16.sigc", &empty, IndexWidth::Bits16)]
+    {
         let options = Options { width: Some(width), lower: true, checksums: true, ..Options::default() };
         let expected = encode_tree(oracle, &options);
         assert_golden(&golden(name), &expected);

@@ -213,17 +213,7 @@ impl Arrays {
             lower_neighbours.extend(lower.map(Some));
             lower_offsets.push(Some(lower_neighbours.len()));
         }
-        Self {
-            lookup,
-            boundary,
-            pointers,
-            lists,
-            flags,
-            child_offsets,
-            last_vertices,
-            lower_offsets,
-            lower_neighbours,
-        }
+        Self { lookup, boundary, pointers, lists, flags, child_offsets, last_vertices, lower_offsets, lower_neighbours }
     }
 }
 

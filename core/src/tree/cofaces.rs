@@ -93,6 +93,9 @@ impl<I: Index> Tree<'_, I> {
     #[must_use]
     pub fn is_top(&self, simplex: SimplexId) -> bool {
         let Some(dim) = self.dim_of(simplex) else { return false };
+        if dim + 1 == self.levels.dims() {
+            return true;
+        }
         if !self.child_range(dim, simplex.index()).is_empty() {
             return false;
         }
@@ -149,11 +152,11 @@ impl<I: Index> Tree<'_, I> {
         dim: Dim,
         scratch: &mut Scratch<'_, I>,
     ) -> Result<(), ScratchError> {
-        let path = self.path(simplex);
-        if dim >= self.levels.dims() || dim < path.len() || path.is_empty() {
+        if dim >= self.levels.dims() || self.dim_of(simplex).is_none_or(|own| own >= dim) {
             return Ok(());
         }
-        let more = dim + 1 - path.len();
+        let path = self.path(simplex);
+        let more = (dim + 1).saturating_sub(path.len());
         let Scratch { queue, found, .. } = scratch;
         queue.clear();
         self.common_neighbours(&path, queue)?;

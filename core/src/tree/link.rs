@@ -96,10 +96,7 @@ impl<I: Index> Tree<'_, I> {
             if !self.report(mate, found)? {
                 return Ok(false);
             }
-            let below = Pair {
-                coface: self.child_range(own + depth, coface),
-                link: self.child_range(depth, mate),
-            };
+            let below = Pair { coface: self.child_range(own + depth, coface), link: self.child_range(depth, mate) };
             if !below.coface.is_empty() {
                 // Never full, for a coface is at most as deep as the tree.
                 let _ = pairs.push(below);

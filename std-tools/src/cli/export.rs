@@ -47,12 +47,10 @@ impl Args {
         let mut notes = Vec::new();
         output::to_path(path, existing, |out| {
             notes =
-                with_view!(view, complex => export::export(&complex, format, out)).map_err(
-                    |error| match error {
-                        ExportError::Io(error) => error,
-                        other => io::Error::other(other),
-                    },
-                )?;
+                with_view!(view, complex => export::export(&complex, format, out)).map_err(|error| match error {
+                    ExportError::Io(error) => error,
+                    other => io::Error::other(other),
+                })?;
             Ok(())
         })?;
         for note in notes {

@@ -209,9 +209,9 @@ impl Summary {
                 components: section.components,
                 bits: if matches!(section.column, Column::F32(_)) { 32 } else { 64 },
             }),
-            provenance: container.section(SectionKind::Provenance).and_then(|section| {
-                std::str::from_utf8(section.column.as_bytes()).ok().map(str::to_owned)
-            }),
+            provenance: container
+                .section(SectionKind::Provenance)
+                .and_then(|section| std::str::from_utf8(section.column.as_bytes()).ok().map(str::to_owned)),
             sections: sections.collect(),
         }
     }
@@ -247,8 +247,7 @@ impl Summary {
         let first = |name: &str, simplices: String| vec![name.to_owned(), simplices];
         let head = first("dimension", "simplices".to_owned());
         let rows = self.simplices.iter().enumerate().map(|(dim, &count)| first(&dim.to_string(), grouped(count)));
-        let mut rows: Vec<_> =
-            std::iter::once(head).chain(rows).chain([first("all", sum(&self.simplices))]).collect();
+        let mut rows: Vec<_> = std::iter::once(head).chain(rows).chain([first("all", sum(&self.simplices))]).collect();
         let (Some(tops), Some(facts)) = (&self.top_simplices, &self.facts) else { return rows };
         let mut add = |head: String, cells: &dyn Fn(Dim) -> String, total: String| {
             let cells = (0..self.simplices.len()).map(cells);

@@ -137,9 +137,13 @@ impl Args {
             }
             Command::Text { file, target } => {
                 output::check(&target.output, target.existing(), std::slice::from_ref(&file))?;
-                let (tree, vertices) = SimplexTree::thaw(&frozen(&file)?).with_context(|| file.display().to_string())?;
+                let (tree, vertices) =
+                    SimplexTree::thaw(&frozen(&file)?).with_context(|| file.display().to_string())?;
                 let named = (0..).zip(0..tree.counts().first().copied().unwrap_or(0));
-                if named.into_iter().any(|(label, _)| tree.contains(&[label]) && vertices.name(label) != label.to_string()) {
+                if named
+                    .into_iter()
+                    .any(|(label, _)| tree.contains(&[label]) && vertices.name(label) != label.to_string())
+                {
                     output::log("sig: note: vertices are numbered, for the format has no other labels than numbers");
                 }
                 output::to_path(&target.output, target.existing(), |out| tree.write_text(out))
@@ -185,7 +189,10 @@ fn print(complex: &impl Relations, mut simplices: impl Iterator<Item = SimplexId
         out.write_all(b"[")?;
         for (number, simplex) in simplices.enumerate() {
             out.write_all(if number > 0 { b"," } else { b"" })?;
-            serde_json::to_writer(&mut *out, &Word { simplex: simplex_labels(complex, simplex), value: value(simplex) })?;
+            serde_json::to_writer(
+                &mut *out,
+                &Word { simplex: simplex_labels(complex, simplex), value: value(simplex) },
+            )?;
         }
         writeln!(out, "]")
     })

@@ -194,11 +194,7 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
 ///
 /// # Errors
 /// [`ExportError`].
-pub fn export(
-    complex: &impl Relations,
-    format: Format,
-    out: &mut dyn Write,
-) -> Result<Vec<Note>, ExportError> {
+pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> Result<Vec<Note>, ExportError> {
     check(complex, format)?;
     let mut notes = Vec::new();
     if format == Format::SimplexList {

@@ -9,10 +9,10 @@ mod bytes;
 mod encode;
 mod mapped;
 mod scratch;
-mod view;
 #[cfg(test)]
 mod tests;
 pub mod verify;
+mod view;
 
 pub use bytes::AlignedBytes;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
