@@ -32,7 +32,9 @@
 //! |---|---|
 //! | the view, and the three widths of indices | [`Complex`], [`AnyComplex`] |
 //! | boundary, co-boundary, adjacency, star, link, clusters | the methods of [`Complex`], by file in [`relations`] |
-//! | the same arrays as a simplex tree | [`tree`] |
+//! | a file that is a simplex tree and no more | [`Tree`], [`AnyTree`] |
+//! | the SIG's arrays as a simplex tree | [`Complex::as_tree`], [`tree`] |
+//! | code for either | [`Relations`] |
 //! | memory for queries | [`Scratch`], [`StaticScratch`] |
 //! | the bytes: header, sections, checksums, encoding | [`mod@format`] |
 //! | embedding a file in a program | [`include_aligned!`] |
@@ -47,9 +49,12 @@ pub mod relations;
 pub mod scratch;
 pub mod storage;
 pub mod tree;
+mod view;
 
 pub use complex::{AnyComplex, Complex};
 pub use embed::Aligned;
 pub use format::FormatError;
 pub use id::{Dim, Index, IndexWidth, MAX_DIM, SimplexId, VertexId};
 pub use scratch::{Scratch, ScratchError, StaticScratch, mark_words};
+pub use tree::{AnyTree, Tree};
+pub use view::Relations;

@@ -70,8 +70,8 @@ impl core::error::Error for ScratchError {}
 /// | part | enough for |
 /// |---|---|
 /// | `marks` | [`mark_words`]`(n)` words, n the number of simplices: for every query |
-/// | `queue`, `masks` | the largest cluster of a co-boundary or cluster query; the whole star for a star query |
-/// | `found` | the answer of any query but star and cluster; for adjacency, repetitions and σ too |
+/// | `queue`, `masks` | on a [`Complex`](crate::Complex) the largest cluster of a co-boundary or cluster query, the whole star for a star query; on a [`Tree`](crate::Tree) the neighbours of a vertex |
+/// | `found` | the answer of any query, on a complex but star and cluster; for adjacency, repetitions and σ too |
 ///
 /// A traversal clears its marks before it hands out the first item, walking what it marked: breaking out of a loop over
 /// the answer, or an error, leaves the scratch ready for the next query.
@@ -190,6 +190,20 @@ impl<I: Index> Queue<'_, I> {
         Ok(())
     }
 
+    /// Keeps the simplices to which `next_mask` gives another mask for the one they have, in their order.
+    pub(crate) fn retain(&mut self, mut next_mask: impl FnMut(usize, u32) -> Option<u32>) {
+        let mut kept = 0;
+        for position in 0..self.len {
+            let Some((id, mask)) = self.get(position) else { break };
+            let Some(mask) = next_mask(id.to_usize(), mask) else { continue };
+            if let (Some(slot), Some(mask_slot)) = (self.ids.get_mut(kept), self.masks.get_mut(kept)) {
+                (*slot, *mask_slot) = (id, mask);
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
     #[inline]
     pub(crate) fn get(&self, position: usize) -> Option<(I, u32)> {
         if position >= self.len {
@@ -225,6 +239,18 @@ impl<I: Index> Found<'_, I> {
         let slot = self.ids.get_mut(self.len).ok_or(ScratchError::Found { at_least: self.len + 1, available })?;
         *slot = simplex;
         self.len += 1;
+        Ok(())
+    }
+
+    /// Adds consecutive simplices, which are ids of the width.
+    #[inline]
+    pub(crate) fn extend(&mut self, ids: core::ops::Range<usize>) -> Result<(), ScratchError> {
+        let (at_least, available) = (self.len.saturating_add(ids.len()), self.ids.len());
+        let slots = self.ids.get_mut(self.len..at_least).ok_or(ScratchError::Found { at_least, available })?;
+        for (slot, id) in slots.iter_mut().zip(ids) {
+            *slot = I::from_usize(id).unwrap_or(I::STOP);
+        }
+        self.len = at_least;
         Ok(())
     }
 

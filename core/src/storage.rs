@@ -167,7 +167,10 @@ impl<I: Index> Complex<'_, I> {
                 SectionKind::Flags => {
                     storage.flags = if matches!(section.column, Column::Bits { .. }) { len } else { 0 }
                 }
-                SectionKind::ChildOffsets | SectionKind::LastVertices => storage.tree_bytes += bytes,
+                SectionKind::ChildOffsets
+                | SectionKind::LastVertices
+                | SectionKind::LowerOffsets
+                | SectionKind::LowerNeighbours => storage.tree_bytes += bytes,
                 SectionKind::Checksums => storage.checksum_bytes += bytes,
                 _ => storage.other_bytes += bytes,
             }

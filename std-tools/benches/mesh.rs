@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         peak_of_child(mesh)?;
         opened.push((path.clone(), opening(&path)?));
         let map = Mapped::open(&path)?;
-        with_complex!(map.complex(), complex => stars(&complex)?);
+        with_complex!(map.complex()?, complex => stars(&complex)?);
     }
     println!("\nopening, alternating between the files:");
     for (path, _) in &opened {
@@ -152,7 +152,7 @@ fn filed(built: &Built, path: &Path) -> Result<(), Box<dyn Error>> {
     let (seconds, written) = timed(|| encoding.write_to(&mut std::fs::File::create(path)?));
     written?;
     let map = Mapped::open(path)?;
-    with_complex!(map.complex(), complex => {
+    with_complex!(map.complex()?, complex => {
         let (file, paper) = (complex.file_storage(), complex.paper_storage().sig());
         let width = complex.container().header().width.bytes();
         println!("  file: {} bytes, written in {:.2} s", file.file_bytes, seconds);
@@ -168,7 +168,7 @@ fn filed(built: &Built, path: &Path) -> Result<(), Box<dyn Error>> {
 fn opening(path: &Path) -> Result<f64, Box<dyn Error>> {
     let (seconds, vertices) = timed(|| {
         let map = Mapped::open(path)?;
-        Ok::<_, sig_tools::store::OpenError>(with_complex!(map.complex(), complex => complex.num_vertices()))
+        Ok::<_, Box<dyn Error>>(with_complex!(map.complex()?, complex => complex.num_vertices()))
     });
     black_box(vertices?);
     Ok(seconds)

@@ -7,9 +7,10 @@
 
 use std::ops::Range;
 
-use sig_core::Dim;
+use sig_core::{Dim, Relations, SimplexId, VertexId};
 
 use crate::build::ids;
+use crate::simplex_tree::{coordinates_of, names_of};
 use crate::soup::{Coordinates, Labels};
 
 /// The most simplices that a [`FrozenTree`] holds: ids are 32-bit, and the largest is the stop code.
@@ -54,6 +55,37 @@ impl Default for FrozenTree {
 }
 
 impl FrozenTree {
+    /// The tree of a complex in a file of either kind, with all that a tree has beside it: labels, coordinates, filtration
+    /// values. `None` if the complex has more simplices than [`MAX_SIMPLICES`].
+    ///
+    /// Cost: O(1) a simplex where the file has the tree's sections.
+    #[must_use]
+    pub fn of(complex: &impl Relations) -> Option<Self> {
+        let num_simplices = complex.num_simplices();
+        u32::try_from(num_simplices).ok().filter(|_| num_simplices <= MAX_SIMPLICES)?;
+        let narrow = |id: usize| u32::try_from(id).unwrap_or(u32::MAX);
+        let dims = complex.dim().map_or(0, |dim| dim + 1);
+        let first = (0..dims).map(|dim| complex.simplices_of_dim(dim).bounds().0.index()).collect::<Vec<_>>();
+        let below_top = (0..first.last().copied().unwrap_or(0)).map(SimplexId::new);
+        let first_child = |simplex| narrow(complex.children(simplex).bounds().0.index());
+        let end = (dims > 0).then_some(narrow(num_simplices));
+        let last = complex.simplices().map(|simplex| complex.last_vertex(simplex).map_or(usize::MAX, VertexId::index));
+        let last_vertices = if complex.num_vertices() <= LastVertices::MOST_BITS16 {
+            LastVertices::Bits16(last.map(|vertex| u16::try_from(vertex).unwrap_or(u16::MAX)).collect())
+        } else {
+            LastVertices::Bits32(last.map(narrow).collect())
+        };
+        Some(Self {
+            child_offsets: below_top.map(first_child).chain(end).collect(),
+            first,
+            num_simplices,
+            last_vertices,
+            filtration: complex.filtration().map(<[f64]>::to_vec),
+            labels: names_of(complex),
+            coordinates: coordinates_of(complex),
+        })
+    }
+
     /// The dimension of the complex; `None` if it is empty.
     #[must_use]
     pub fn dim(&self) -> Option<Dim> {

@@ -33,7 +33,7 @@
 //! let file = store::Encoding::new(&built, &store::EncodeOptions::default())?;
 //! atomic::write(&out, atomic::Existing::Refuse, |out| file.write_to(out))?;
 //! let map = Mapped::open(&out)?;
-//! assert_eq!(sig_core::with_complex!(map.complex(), complex => complex.num_simplices()), 7);
+//! assert_eq!(sig_core::with_complex!(map.complex()?, complex => complex.num_simplices()), 7);
 //! # assert_eq!(report.vertices, 3);
 //! # Ok(())
 //! # }
@@ -60,7 +60,7 @@ pub mod subsample;
 pub mod tops;
 pub mod witness;
 
-pub use store::{Loaded, Mapped, OwnedScratch};
+pub use store::{Loaded, Mapped, OwnedScratch, View};
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

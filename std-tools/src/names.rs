@@ -1,7 +1,7 @@
 //! Simplices by the labels that the user's data give to vertices, and back.
 
 use sig_core::complex::columns::Labels;
-use sig_core::{Complex, Index, SimplexId, VertexId};
+use sig_core::{Relations, SimplexId, VertexId};
 
 /// Why labels are not those of a simplex.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
@@ -29,7 +29,7 @@ pub enum FindError {
 
 /// The label of a vertex; `#` and its number if the file has none that can be read.
 #[must_use]
-pub fn vertex_label<I: Index>(complex: &Complex<'_, I>, vertex: VertexId) -> String {
+pub fn vertex_label(complex: &impl Relations, vertex: VertexId) -> String {
     label_text(&complex.labels(), vertex)
 }
 
@@ -39,7 +39,7 @@ fn label_text(labels: &Labels<'_>, vertex: VertexId) -> String {
 
 /// The labels of the vertices of a simplex, by increasing vertex.
 #[must_use]
-pub fn simplex_labels<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) -> Vec<String> {
+pub fn simplex_labels(complex: &impl Relations, simplex: SimplexId) -> Vec<String> {
     // Finding the labels walks the section table: once for them all.
     let labels = complex.labels();
     complex.vertices(simplex).map(|vertex| label_text(&labels, vertex)).collect()
@@ -47,7 +47,7 @@ pub fn simplex_labels<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) ->
 
 /// The labels of the vertices of a simplex, separated by commas.
 #[must_use]
-pub fn simplex_name<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) -> String {
+pub fn simplex_name(complex: &impl Relations, simplex: SimplexId) -> String {
     simplex_labels(complex, simplex).join(",")
 }
 
@@ -55,7 +55,7 @@ pub fn simplex_name<I: Index>(complex: &Complex<'_, I>, simplex: SimplexId) -> S
 ///
 /// Cost: O(1) where vertices are called by their numbers; else one pass over the labels.
 #[must_use]
-pub fn find_vertex<I: Index>(complex: &Complex<'_, I>, label: &str) -> Option<VertexId> {
+pub fn find_vertex(complex: &impl Relations, label: &str) -> Option<VertexId> {
     let vertices = || (0..complex.num_vertices()).map(VertexId::new);
     match complex.labels() {
         Labels::Numbered => {
@@ -77,7 +77,7 @@ pub fn find_vertex<I: Index>(complex: &Complex<'_, I>, label: &str) -> Option<Ve
 ///
 /// # Errors
 /// [`FindError`], naming the label or labels that are to blame.
-pub fn find_simplex<I: Index>(complex: &Complex<'_, I>, labels: &[&str]) -> Result<SimplexId, FindError> {
+pub fn find_simplex(complex: &impl Relations, labels: &[&str]) -> Result<SimplexId, FindError> {
     let mut vertices = Vec::with_capacity(labels.len());
     for &label in labels {
         let unknown = || FindError::UnknownVertex { label: label.to_owned() };

@@ -47,6 +47,13 @@ fn golden_files_are_built_again() {
         (golden.join("empty-16.sigc"), &["-", "--format", "simplices"], ""),
         (tetrahedra, &["-", "--format", "simplices"], "0 1 2 3\n1 2 3 4\n4 5\n"),
     ];
+    for name in ["figure", "empty"] {
+        let (sig_file, tree) = (golden.join(format!("{name}-16.sigc")), golden.join(format!("{name}-tree-16.sigc")));
+        let converted = directory.path().join(name);
+        let arguments = ["tree", "convert", "--kind", "tree", sig_file.to_str().unwrap(), "-o"];
+        sig(&[&arguments[..], &[converted.to_str().unwrap()]].concat(), "");
+        assert!(fs::read(&converted).unwrap() == fs::read(&tree).unwrap(), "{}", tree.display());
+    }
     for (number, (expected, arguments, input)) in cases.iter().enumerate() {
         let built = directory.path().join(format!("{number}.sigc"));
         sig(&[&["build", "-o", built.to_str().unwrap()], *arguments].concat(), input);

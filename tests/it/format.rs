@@ -247,7 +247,7 @@ fn a_failed_swap_changes_nothing() {
 
 /// The file with one more section of a kind that this version does not know, and the given version.
 fn with_unknown_section(minor: u16, checksums: bool) -> AlignedBytes {
-    let options = Options { checksums, ..Options::everything(&example(), IndexWidth::Bits16) };
+    let options = Options { checksums, lower: false, ..Options::everything(&example(), IndexWidth::Bits16) };
     let bytes = encode(&example(), &options);
     let count = u32::from_le_bytes(bytes[20..24].try_into().unwrap());
     let table_end = HEADER_BYTES + ENTRY_BYTES * count as usize;

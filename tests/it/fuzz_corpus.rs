@@ -24,6 +24,11 @@ fn open() {
 }
 
 #[test]
+fn tree() {
+    replay("tree", fuzz::tree);
+}
+
+#[test]
 fn roundtrip() {
     replay("roundtrip", fuzz::roundtrip);
 }

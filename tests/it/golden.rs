@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sig_core::format;
-use sig_core::{Complex, IndexWidth};
-use sig_tests::conformance::assert_conforms;
-use sig_tests::encode::{Names, Options, encode, least_width};
+use sig_core::{Complex, IndexWidth, Tree};
+use sig_tests::conformance::{assert_conforms, assert_tree_conforms};
+use sig_tests::encode::{Names, Options, encode, encode_tree, least_width};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tools::store::AlignedBytes;
@@ -43,6 +43,23 @@ fn files_are_what_the_format_says() {
         &golden("empty-16.sigc"),
         &encode(&Oracle::new::<[usize; 0]>(&[]), &Options { tree: true, checksums: true, ..Options::default() }),
     );
+}
+
+/// The same complex as a file of kind tree, as `sig tree convert` writes it.
+#[test]
+fn trees_are_what_the_format_says() {
+    let empty = Oracle::new::<[usize; 0]>(&[]);
+    for (name, oracle, width) in
+        [("figure-tree-16.sigc", &figure(), IndexWidth::Bits16), ("empty-tree-16.sigc", &empty, IndexWidth::Bits16)]
+    {
+        let options = Options { width: Some(width), lower: true, checksums: true, ..Options::default() };
+        let expected = encode_tree(oracle, &options);
+        assert_golden(&golden(name), &expected);
+        assert_eq!(format::verify(&expected), Ok(()));
+        let tree = Tree::<u16>::from_bytes(&expected).unwrap();
+        assert_eq!(tree.validate(), Ok(()));
+        assert_tree_conforms(&tree, oracle);
+    }
 }
 
 /// The file that the documentation of `sig-core` opens: two tetrahedra on a common triangle, with a dangling edge.

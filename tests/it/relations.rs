@@ -2,9 +2,9 @@
 //! the simplex tree, on buffers that went through bytes.
 
 use proptest::prelude::*;
-use sig_core::{AnyComplex, IndexWidth, SimplexId, VertexId, with_complex};
-use sig_tests::conformance::{assert_agrees_with_the_paper, assert_conforms};
-use sig_tests::encode::{Options, encode};
+use sig_core::{AnyComplex, AnyTree, IndexWidth, SimplexId, VertexId, with_complex, with_tree};
+use sig_tests::conformance::{assert_agrees_with_the_paper, assert_conforms, assert_tree_conforms};
+use sig_tests::encode::{Options, encode, encode_tree};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::strategies;
@@ -14,7 +14,7 @@ use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Loaded, OwnedScratch};
 
 fn check(oracle: &Oracle, width: IndexWidth, tree: bool) {
-    let bytes = encode(oracle, &Options { tree, ..Options::bare(width) });
+    let bytes = encode(oracle, &Options { tree, lower: tree, ..Options::bare(width) });
     let any = AnyComplex::from_bytes(&bytes).unwrap();
     with_complex!(any, complex => {
         assert_eq!(complex.validate(), Ok(()));
@@ -23,8 +23,31 @@ fn check(oracle: &Oracle, width: IndexWidth, tree: bool) {
     });
 }
 
+/// The same complex as a file of kind tree, with and without lower neighbours.
+fn check_tree(oracle: &Oracle, width: IndexWidth, filtration: Option<Vec<f64>>) {
+    for lower in [false, true] {
+        let options = Options { lower, filtration: filtration.clone(), ..Options::bare(width) };
+        let bytes = encode_tree(oracle, &options);
+        let any = AnyTree::from_bytes(&bytes).unwrap();
+        with_tree!(any, tree => {
+            assert_eq!(tree.validate(), Ok(()));
+            assert_eq!(tree.has_lower_neighbours(), lower);
+            assert_tree_conforms(&tree, oracle);
+        });
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn of_random_trees(simplices in strategies::simplices(), width in 0..3usize, salt: u32) {
+        let oracle = Oracle::new(&simplices);
+        // The greatest of some numbers of the vertices, so not less than those of faces, and often equal.
+        let number = |&vertex: &usize| f64::from((vertex as u32).wrapping_mul(salt | 1) % 5);
+        let value = |word: &sig_tests::oracle::Word| word.iter().map(number).fold(0.0, f64::max);
+        check_tree(&oracle, IndexWidth::ALL[width], Some(oracle.words().iter().map(value).collect()));
+    }
 
     #[test]
     fn of_random_complexes(simplices in strategies::simplices(), width in 0..3usize, tree: bool) {
@@ -48,6 +71,7 @@ fn of_the_least_complexes_at_every_width() {
         let oracle = Oracle::new(simplices);
         for width in IndexWidth::ALL {
             check(&oracle, width, false);
+            check_tree(&oracle, width, None);
             check(&oracle, width, true);
         }
     }
@@ -76,7 +100,7 @@ fn of_a_book_of_many_pages() {
     let built = build(soup, &BuildOptions::default()).unwrap();
     let file = Loaded::from_file_bytes(Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap());
     let file = file.unwrap();
-    let AnyComplex::Bits32(complex) = file.complex() else { panic!("32 bits") };
+    let AnyComplex::Bits32(complex) = file.complex().unwrap() else { panic!("32 bits") };
     let pages = PAGES as usize;
     let mut memory = OwnedScratch::new(&complex);
     let mut scratch = memory.scratch();

@@ -66,7 +66,7 @@ fn check(oracle: &Oracle, options: &Options) {
         assert_eq!(paper.sig_general(), Storage { integers: general, bits: below_top.len() });
         assert_eq!(paper.incidence_graph(), Storage { integers: 2 * faces + below_top.len(), bits: 0 });
 
-        assert_eq!(file.tree_bytes, section_bytes(&[6, 7]));
+        assert_eq!(file.tree_bytes, section_bytes(&[6, 7, 17, 18]));
         assert_eq!(file.checksum_bytes, section_bytes(&[16]));
         assert_eq!(file.other_bytes, section_bytes(&(8..16).collect::<Vec<_>>()));
         assert_eq!(file.file_bytes, bytes.len());

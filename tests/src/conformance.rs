@@ -1,6 +1,6 @@
 //! A view compared with the oracle: every relation, of every simplex.
 
-use sig_core::{Complex, Index, Scratch, SimplexId, VertexId, mark_words};
+use sig_core::{Complex, Index, Relations, Scratch, SimplexId, Tree, VertexId, mark_words};
 
 use crate::oracle::Oracle;
 use crate::paper;
@@ -70,24 +70,65 @@ pub fn exact<T>(mut iterator: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     items
 }
 
-/// Compares every relation of every simplex with its definition.
+/// Compares every relation of every simplex with its definition, those of the tree's sections too.
 ///
 /// # Panics
 /// Where the two differ.
 pub fn assert_conforms<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle) {
-    assert_numbers(complex, oracle);
+    assert_relations(complex, oracle);
+    for simplex in 0..oracle.len() {
+        assert_stored(complex, oracle, simplex);
+    }
     let mut memory = Memory::roomy(oracle.len());
     let mut scratch = memory.scratch();
     for simplex in 0..oracle.len() {
-        assert_downward(complex, oracle, simplex);
-        assert_stored(complex, oracle, simplex);
-        assert_upward(complex, oracle, simplex, &mut scratch);
-        assert_tree(complex, oracle, simplex);
+        assert_clusters(complex, oracle, simplex, &mut scratch);
     }
-    assert_no_relations_past_the_end(complex, &mut scratch);
+    assert_no_clusters_past_the_end(complex, &mut scratch);
+    if let Some(tree) = complex.as_tree() {
+        assert_tree_conforms(tree, oracle);
+    }
 }
 
-fn assert_numbers<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle) {
+/// Compares every relation of every simplex of a tree with its definition, and the orders of all simplices.
+///
+/// # Panics
+/// Where the two differ.
+pub fn assert_tree_conforms<I: Index>(tree: &Tree<'_, I>, oracle: &Oracle) {
+    assert_relations(tree, oracle);
+    let mut by_word: Vec<usize> = (0..oracle.len()).collect();
+    by_word.sort_by_key(|&simplex| oracle.word(simplex));
+    assert_eq!(in_order(exact(tree.depth_first())), by_word);
+
+    let mut order = vec![I::ZERO; oracle.len()];
+    let ordered = in_order(tree.filtration_order(&mut order).unwrap());
+    let value = |simplex: usize| tree.filtration().map_or(0.0, |values| values[simplex]);
+    let mut expected: Vec<usize> = (0..oracle.len()).collect();
+    expected.sort_by(|&left, &right| {
+        let key = |simplex| (oracle.dim(simplex), oracle.word(simplex));
+        value(left).partial_cmp(&value(right)).unwrap().then(key(left).cmp(&key(right)))
+    });
+    assert_eq!(ordered, expected);
+    if let Some(few) = oracle.len().checked_sub(1) {
+        assert!(tree.filtration_order(&mut order[..few]).is_err());
+    }
+}
+
+/// What complexes and trees have in common.
+fn assert_relations<V: Relations>(view: &V, oracle: &Oracle) {
+    assert_numbers(view, oracle);
+    let mut memory = Memory::roomy(oracle.len());
+    let mut scratch = memory.scratch();
+    for simplex in 0..oracle.len() {
+        assert_downward(view, oracle, simplex);
+        assert_upward(view, oracle, simplex, &mut scratch);
+        assert_tree(view, oracle, simplex);
+    }
+    assert_no_relations_past_the_end(view, &mut scratch);
+    assert!(memory.marks.iter().all(|&word| word == 0), "a query left marks behind");
+}
+
+fn assert_numbers(complex: &impl Relations, oracle: &Oracle) {
     assert_eq!(complex.dim(), oracle.dims().checked_sub(1));
     assert_eq!(complex.num_simplices(), oracle.len());
     assert_eq!(complex.num_vertices(), oracle.of_dim(0).len());
@@ -102,7 +143,7 @@ fn assert_numbers<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle) {
 }
 
 /// Dimension, vertices, facets, boundary and closure.
-fn assert_downward<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize) {
+fn assert_downward(complex: &impl Relations, oracle: &Oracle, simplex: usize) {
     let (id, dim) = (SimplexId::new(simplex), oracle.dim(simplex));
     assert_eq!(complex.dim_of(id), Some(dim));
     let word: Vec<usize> = exact(complex.vertices(id)).into_iter().map(VertexId::index).collect();
@@ -130,13 +171,13 @@ fn assert_stored<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: u
         let expected: Vec<usize> = expected.iter().filter(|(dim, _)| *dim == g).map(|&(_, first)| first).collect();
         assert_eq!(in_order(complex.partial_coboundary_of_dim(id, g)), expected, "C*({g}) of {id}");
     }
-    assert_eq!(complex.is_top(id), oracle.is_top(simplex), "whether {id} is top");
     assert_eq!(complex.is_single_cluster(id), oracle.is_single_cluster(simplex), "flag of {id}");
 }
 
 /// What is found by traversal.
-fn assert_upward<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize, scratch: &mut Scratch<'_, I>) {
+fn assert_upward<V: Relations>(complex: &V, oracle: &Oracle, simplex: usize, scratch: &mut Scratch<'_, V::Index>) {
     let id = SimplexId::new(simplex);
+    assert_eq!(complex.is_top(id), oracle.is_top(simplex), "whether {id} is top");
     for g in 0..oracle.dims() + 1 {
         let found = sorted(exact(complex.coboundary(id, g, scratch).unwrap()));
         assert_eq!(found, oracle.coboundary(simplex, g), "{g}-cofaces of {id}");
@@ -151,6 +192,11 @@ fn assert_upward<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: u
         let found = sorted(exact(complex.k_adjacency(id, k, scratch).unwrap()));
         assert_eq!(found, oracle.k_adjacency(simplex, k), "simplices {k}-adjacent to {id}");
     }
+}
+
+/// The simplices of each cluster.
+fn assert_clusters<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize, scratch: &mut Scratch<'_, I>) {
+    let id = SimplexId::new(simplex);
     let clusters = oracle.clusters(simplex);
     for other in 0..oracle.len() {
         let cluster = clusters.iter().find(|cluster| cluster.members.contains(&other));
@@ -161,7 +207,7 @@ fn assert_upward<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: u
 }
 
 /// The arrays as a simplex tree.
-fn assert_tree<I: Index>(complex: &Complex<'_, I>, oracle: &Oracle, simplex: usize) {
+fn assert_tree(complex: &impl Relations, oracle: &Oracle, simplex: usize) {
     let (id, word) = (SimplexId::new(simplex), oracle.word(simplex));
     assert_eq!(complex.parent(id).map(SimplexId::index), oracle.parent(simplex));
     assert_eq!(in_order(exact(complex.children(id))), oracle.children(simplex), "children of {id}");
@@ -183,23 +229,32 @@ fn vertex_ids(word: &[usize]) -> Vec<VertexId> {
     word.iter().copied().map(VertexId::new).collect()
 }
 
-fn assert_no_relations_past_the_end<I: Index>(complex: &Complex<'_, I>, scratch: &mut Scratch<'_, I>) {
-    let count = complex.num_simplices();
-    assert_eq!(complex.find(&[]), None);
-    assert_eq!(in_order(complex.with_prefix(&[])), in_order(complex.simplices()));
-    for id in [count, count + 1, count + 64, usize::MAX].map(SimplexId::new) {
-        assert_eq!(complex.dim_of(id), None);
-        assert_eq!(complex.vertices(id).len() + complex.facets(id).len() + complex.closure(id).len(), 0);
-        assert_eq!(complex.boundary(id, 0).len() + complex.children(id).len() + complex.siblings(id).len(), 0);
+fn ids_past_the_end(view: &impl Relations) -> [SimplexId; 4] {
+    let count = view.num_simplices();
+    [count, count + 1, count + 64, usize::MAX].map(SimplexId::new)
+}
+
+fn assert_no_relations_past_the_end<V: Relations>(view: &V, scratch: &mut Scratch<'_, V::Index>) {
+    assert_eq!(view.find(&[]), None);
+    assert_eq!(in_order(view.with_prefix(&[])), in_order(view.simplices()));
+    for id in ids_past_the_end(view) {
+        assert_eq!(view.dim_of(id), None);
+        assert_eq!(view.vertices(id).len() + view.facets(id).len() + view.closure(id).len(), 0);
+        assert_eq!(view.boundary(id, 0).len() + view.children(id).len() + view.siblings(id).len(), 0);
+        assert!(!view.is_top(id) && view.parent(id).is_none() && view.last_vertex(id).is_none());
+        assert_eq!(view.coboundary(id, 1, scratch).unwrap().len(), 0);
+        assert_eq!(view.star(id, scratch).unwrap().len(), 0);
+        assert_eq!(view.restricted_star(id, scratch).unwrap().len(), 0);
+        assert_eq!(view.link(id, scratch).unwrap().len(), 0);
+        assert_eq!(view.adjacency(id, scratch).unwrap().len(), 0);
+        assert_eq!(view.k_adjacency(id, 0, scratch).unwrap().len(), 0);
+    }
+}
+
+fn assert_no_clusters_past_the_end<I: Index>(complex: &Complex<'_, I>, scratch: &mut Scratch<'_, I>) {
+    for id in ids_past_the_end(complex) {
         assert_eq!(complex.clusters(id).count() + complex.partial_coboundary(id).count(), 0);
-        assert!(!complex.is_top(id) && !complex.is_single_cluster(id));
-        assert!(complex.parent(id).is_none() && complex.last_vertex(id).is_none());
-        assert_eq!(complex.coboundary(id, 1, scratch).unwrap().len(), 0);
-        assert_eq!(complex.star(id, scratch).unwrap().len(), 0);
-        assert_eq!(complex.restricted_star(id, scratch).unwrap().len(), 0);
-        assert_eq!(complex.link(id, scratch).unwrap().len(), 0);
-        assert_eq!(complex.adjacency(id, scratch).unwrap().len(), 0);
-        assert_eq!(complex.k_adjacency(id, 0, scratch).unwrap().len(), 0);
+        assert!(!complex.is_single_cluster(id));
         assert_eq!(complex.cluster_members(id, SimplexId::new(0), scratch).unwrap().len(), 0);
         assert_eq!(complex.cluster_members(SimplexId::new(0), id, scratch).unwrap().len(), 0);
     }

@@ -97,8 +97,10 @@ pub enum Names {
 pub struct Options {
     /// The index width; the least that fits if `None`.
     pub width: Option<IndexWidth>,
-    /// Child offsets and last vertices.
+    /// Child offsets and last vertices; a file of kind tree has them in any case.
     pub tree: bool,
+    /// The lower neighbours of the vertices.
+    pub lower: bool,
     /// Block checksums.
     pub checksums: bool,
     /// Labels of the vertices.
@@ -122,7 +124,7 @@ impl Options {
         Self { width: Some(width), ..Self::default() }
     }
 
-    /// Every optional section, filled with something that is easy to tell apart.
+    /// Every optional section of a SIG, filled with something that is easy to tell apart.
     ///
     /// # Panics
     /// If the complex has more than 2^32 simplices.
@@ -134,6 +136,7 @@ impl Options {
         Self {
             width: Some(width),
             tree: true,
+            lower: true,
             checksums: true,
             names: Names::Text((0..vertices).map(|vertex| format!("vertex {vertex} ä")).collect()),
             coordinates: Some((3, (0..3 * vertices).map(|at| number(at) - 0.5).collect())),
@@ -166,6 +169,8 @@ struct Arrays {
     flags: Vec<bool>,
     child_offsets: Vec<Option<usize>>,
     last_vertices: Vec<Option<usize>>,
+    lower_offsets: Vec<Option<usize>>,
+    lower_neighbours: Vec<Option<usize>>,
 }
 
 impl Arrays {
@@ -202,36 +207,55 @@ impl Arrays {
             child_offsets.push(Some(oracle.len()));
         }
         let last_vertices = oracle.words().iter().map(|word| word.last().copied()).collect();
-        Self { lookup, boundary, pointers, lists, flags, child_offsets, last_vertices }
+        let (mut lower_offsets, mut lower_neighbours) = (vec![Some(0)], Vec::new());
+        for vertex in oracle.of_dim(0) {
+            let lower = oracle.adjacency(vertex).into_iter().filter(|&other| other < vertex);
+            lower_neighbours.extend(lower.map(Some));
+            lower_offsets.push(Some(lower_neighbours.len()));
+        }
+        Self { lookup, boundary, pointers, lists, flags, child_offsets, last_vertices, lower_offsets, lower_neighbours }
     }
 }
 
-/// The file of a complex.
+/// The file of a complex, a SIG.
 ///
 /// # Panics
 /// If the complex does not fit in the width, or the options do not fit the complex.
 #[must_use]
 pub fn encode(oracle: &Oracle, options: &Options) -> AlignedBytes {
+    encode_kind(Kind::Sig, oracle, options.width.unwrap_or_else(|| least_width(oracle)), options)
+}
+
+/// The file of a complex, a simplex tree.
+///
+/// # Panics
+/// If the complex does not fit in the width, or the options do not fit the complex.
+#[must_use]
+pub fn encode_tree(oracle: &Oracle, options: &Options) -> AlignedBytes {
+    let largest = oracle.len().saturating_sub(1) as u64;
+    let least = IndexWidth::least_for(largest).expect("64 bits are enough");
+    encode_kind(Kind::Tree, oracle, options.width.unwrap_or(least), options)
+}
+
+fn encode_kind(kind: Kind, oracle: &Oracle, width: IndexWidth, options: &Options) -> AlignedBytes {
     let arrays = Arrays::new(oracle);
-    let width = options.width.unwrap_or_else(|| least_width(oracle));
     let vertices = oracle.of_dim(0).len();
     let index = |values: &[Option<usize>]| Integers::new(width, values);
     let (lookup, boundary) = (index(&arrays.lookup), index(&arrays.boundary));
     let (pointers, lists) = (index(&arrays.pointers), index(&arrays.lists));
     let flags: Bits = arrays.flags.iter().copied().collect();
-    let mut sections = vec![
-        Section::new(SectionKind::Lookup, lookup.column()),
-        Section::new(SectionKind::Boundary, boundary.column()),
-        Section::new(SectionKind::Pointers, pointers.column()),
-        Section::new(SectionKind::Lists, lists.column()),
-        Section::new(SectionKind::Flags, flags.column()),
-    ];
+    let mut sections = vec![Section::new(SectionKind::Lookup, lookup.column())];
+    if kind == Kind::Sig {
+        sections.push(Section::new(SectionKind::Boundary, boundary.column()));
+        sections.push(Section::new(SectionKind::Pointers, pointers.column()));
+        sections.push(Section::new(SectionKind::Lists, lists.column()));
+        sections.push(Section::new(SectionKind::Flags, flags.column()));
+    }
 
-    let tree = options.tree.then(|| {
-        let label_width = IndexWidth::least_for(vertices as u64).unwrap();
-        (index(&arrays.child_offsets), Integers::new(label_width, &arrays.last_vertices))
-    });
-    if let Some((offsets, last)) = &tree {
+    let label_width = IndexWidth::least_for(vertices as u64).unwrap();
+    let offsets = index(&arrays.child_offsets);
+    let last = Integers::new(label_width, &arrays.last_vertices);
+    if options.tree || kind == Kind::Tree {
         sections.push(Section::new(SectionKind::ChildOffsets, offsets.column()));
         sections.push(Section::new(SectionKind::LastVertices, last.column()));
     }
@@ -267,7 +291,13 @@ pub fn encode(oracle: &Oracle, options: &Options) -> AlignedBytes {
     if let Some(text) = &options.provenance {
         sections.push(Section::new(SectionKind::Provenance, Column::U8(text.as_bytes())));
     }
-    let encoder = Encoder::new(Kind::Sig, width, oracle.dims(), oracle.len() as u64, &sections).unwrap();
+    let lower_offsets = index(&arrays.lower_offsets);
+    let lower_neighbours = Integers::new(label_width, &arrays.lower_neighbours);
+    if options.lower {
+        sections.push(Section::new(SectionKind::LowerOffsets, lower_offsets.column()));
+        sections.push(Section::new(SectionKind::LowerNeighbours, lower_neighbours.column()));
+    }
+    let encoder = Encoder::new(kind, width, oracle.dims(), oracle.len() as u64, &sections).unwrap();
     let encoder = if options.checksums { encoder.with_checksums().unwrap() } else { encoder };
     let mut bytes = AlignedBytes::zeroed(usize::try_from(encoder.file_bytes()).unwrap());
     let written = encoder.encode(&mut bytes).unwrap();

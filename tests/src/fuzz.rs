@@ -2,7 +2,7 @@
 
 use arbitrary::Unstructured;
 use sig_core::format::{self, Container};
-use sig_core::{AnyComplex, with_complex};
+use sig_core::{AnyComplex, AnyTree, with_complex, with_tree};
 use sig_tools::build::{BuildOptions, build};
 use sig_tools::incidence_graph::IncidenceGraph;
 pub use sig_tools::io::Format;
@@ -10,10 +10,11 @@ use sig_tools::io::{ReadOptions, read_bytes};
 use sig_tools::soup::{Labels, Scalars, Soup};
 
 use crate::conformance;
-use crate::encode::{Options, encode};
+use crate::encode::{Options, encode, encode_tree};
 use crate::oracle::{Oracle, Word};
-use crate::queries::{ask_everything, reseal};
+use crate::queries::{ask_everything, ask_tree, reseal};
 use sig_tools::store::AlignedBytes;
+use sig_tools::{View, with_view};
 
 /// Simplices of which everything is asked.
 const ASKED: usize = 48;
@@ -37,12 +38,42 @@ fn open_one(bytes: &AlignedBytes) {
     if let Ok(container) = Container::from_bytes(bytes) {
         assert!(container.sections().count() <= container.header().sections as usize);
     }
-    if let Ok(any) = AnyComplex::from_bytes(bytes) {
-        // Vertices alone take no bytes: of them there may be any number.
-        if with_complex!(any, complex => complex.num_simplices()) <= 1 << 16 {
-            with_complex!(any, complex => { ask_everything(&complex, ASKED); });
+    match View::from_bytes(bytes) {
+        // Vertices alone take no bytes in a SIG: of them there may be any number.
+        Ok(view) if with_view!(view, complex => complex.num_simplices()) > 1 << 16 => {}
+        Ok(View::Complex(any)) => with_complex!(any, complex => { ask_everything(&complex, ASKED); }),
+        Ok(View::Tree(any)) => with_tree!(any, tree => { ask_tree(&tree, ASKED); }),
+        Err(_) => {}
+    }
+}
+
+/// Reads the bytes as a list of simplices, encodes the tree of their complex with some of its arrays overwritten by the
+/// last bytes, and asks it everything; a tree that validation accepts is the complex that its words say.
+///
+/// # Panics
+/// Where it is not.
+pub fn tree(bytes: &[u8]) {
+    let (list, damage) = bytes.split_at(bytes.len() - bytes.len() / 4);
+    let oracle = Oracle::new(&simplices(list).unwrap_or_default());
+    let lower = !bytes.len().is_multiple_of(3);
+    let mut file = encode_tree(&oracle, &Options { lower, ..Options::default() });
+    let arrays = Container::from_bytes(&file).expect("a file that was just written").spans().next();
+    let start = arrays.map_or(file.len(), |(_, _, range)| range.start);
+    for change in damage.chunks_exact(3) {
+        let at = start + usize::from(u16::from_le_bytes([change[0], change[1]])) % (file.len() - start).max(1);
+        if let Some(byte) = file.get_mut(at) {
+            *byte = change[2];
         }
     }
+    let Ok(any) = AnyTree::from_bytes(&file) else { return };
+    with_tree!(any, tree => {
+        ask_tree(&tree, ASKED);
+        if tree.validate().is_ok() {
+            let word = |simplex| tree.vertices(simplex).map(|vertex| vertex.index()).collect::<Word>();
+            let words: Vec<Word> = tree.simplices().map(word).collect();
+            conformance::assert_tree_conforms(&tree, &Oracle::new(&words));
+        }
+    });
 }
 
 fn swap_twice(bytes: &AlignedBytes) {

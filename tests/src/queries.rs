@@ -1,66 +1,95 @@
 //! Every query on a view that may be anything: nothing is known but that it was opened.
 
 use sig_core::format::{ENTRY_BYTES, HEADER_BYTES, crc32};
-use sig_core::{Complex, Index, SimplexId, VertexId};
+use sig_core::{Complex, Index, Relations, SimplexId, Tree, VertexId};
 
 use crate::conformance::Memory;
 
-/// Asks every query on up to `simplices` simplices, and past the end, and checks that each answer ends within the
-/// number of simplices there are. Returns how many items came back.
+/// Asks a complex every query on up to `simplices` simplices, and past the end, and checks that each answer ends within
+/// the number of simplices there are; the same of its tree, if it has one. Returns how many items came back.
 ///
 /// # Panics
 /// If an answer is longer than it can be.
 pub fn ask_everything<I: Index>(complex: &Complex<'_, I>, simplices: usize) -> usize {
-    let total = complex.num_simplices();
-    // Marks are whole words, so a damaged complex may report that many ids.
-    let mut memory = Memory::<I>::new(total.div_ceil(32), 2 * total.min(4096), 4 * total.min(4096));
-    let mut items = 0;
-    let mut ended = |count: usize, limit: usize| {
-        assert!(count <= limit, "{count} items, {limit} possible");
-        items += count;
-    };
-    let bytes = complex.container().bytes().len();
+    let (total, bytes) = (complex.num_simplices(), complex.container().bytes().len());
+    let mut items = ask_relations(complex, simplices) + complex.as_tree().map_or(0, |tree| ask_tree(tree, simplices));
+    let mut memory = memory(total);
     let mut scratch = memory.scratch();
-    for id in (0..total.min(simplices)).chain([total, total + 7, usize::MAX]).map(SimplexId::new) {
-        ended(complex.vertices(id).count(), 32);
-        ended(complex.facets(id).count(), 32);
-        ended(complex.closure(id).count(), total);
-        ended(complex.partial_coboundary(id).count(), bytes);
-        ended(complex.children(id).count() + complex.siblings(id).count(), 2 * total);
+    for id in ids(total, simplices) {
+        items += ended(complex.partial_coboundary(id).count(), bytes) + usize::from(complex.is_single_cluster(id));
         for cluster in complex.clusters(id) {
             let members = complex.cluster_members(id, cluster.representative, &mut scratch);
-            ended(members.map_or(0, Iterator::count), total + 31);
+            items += ended(members.map_or(0, Iterator::count), total + 31);
         }
         for dim in 0..=complex.dim().unwrap_or(0) + 1 {
-            ended(complex.boundary(id, dim).count(), total);
-            ended(complex.coboundary(id, dim, &mut scratch).map_or(0, Iterator::count), total + 31);
-            ended(complex.k_adjacency(id, dim, &mut scratch).map_or(0, Iterator::count), total + 31);
-            ended(complex.partial_coboundary_of_dim(id, dim).count(), bytes);
+            items += ended(complex.partial_coboundary_of_dim(id, dim).count(), bytes);
         }
-        ended(complex.star(id, &mut scratch).map_or(0, Iterator::count), total + 31);
-        ended(complex.restricted_star(id, &mut scratch).map_or(0, Iterator::count), total + 31);
-        ended(complex.link(id, &mut scratch).map_or(0, Iterator::count), total + 31);
-        ended(complex.adjacency(id, &mut scratch).map_or(0, Iterator::count), total + 31);
-        let word: Vec<VertexId> = complex.vertices(id).collect();
-        ended(usize::from(complex.find(&word).is_some()), 1);
-        ended(complex.with_prefix(&word).count(), total);
-        let flags = [complex.is_top(id), complex.is_single_cluster(id), complex.parent(id).is_some()];
-        ended(flags.into_iter().filter(|&flag| flag).count(), flags.len());
-        ended(usize::from(complex.last_vertex(id).is_some()), 1);
-        ended(usize::from(complex.labels().get(VertexId::new(id.index())).is_some()), 1);
     }
-    ask_the_whole(complex);
+    let _ = (complex.paper_storage(), complex.file_storage(), complex.validate(), complex.provenance());
+    for dim in 0..=complex.dim().unwrap_or(0) {
+        let _ = (complex.cluster_counts(dim).total(), complex.attribute(dim, "weight"));
+    }
     assert!(memory.marks.iter().all(|&word| word == 0), "a query left marks behind");
     items
 }
 
-/// What is asked of a complex, not of a simplex.
-fn ask_the_whole<I: Index>(complex: &Complex<'_, I>) {
-    let _ = (complex.euler_characteristic(), complex.paper_storage(), complex.file_storage(), complex.validate());
-    let _ = (complex.coordinates(), complex.parity(), complex.filtration(), complex.provenance());
-    for dim in 0..=complex.dim().unwrap_or(0) {
-        let _ = (complex.cluster_counts(dim).total(), complex.attribute(dim, "weight"));
+/// The same of a tree.
+///
+/// # Panics
+/// If an answer is longer than it can be.
+pub fn ask_tree<I: Index>(tree: &Tree<'_, I>, simplices: usize) -> usize {
+    let total = tree.num_simplices();
+    let mut order = vec![I::ZERO; total.min(4096)];
+    let ordered = tree.filtration_order(&mut order).map_or(0, Iterator::count);
+    let _ = (tree.validate(), tree.provenance(), tree.attribute(0, "weight"), tree.has_lower_neighbours());
+    ask_relations(tree, simplices) + ended(ordered, total) + ended(tree.depth_first().count(), total)
+}
+
+/// What complexes and trees are asked.
+fn ask_relations<V: Relations>(view: &V, simplices: usize) -> usize {
+    let total = view.num_simplices();
+    let mut memory = memory(total);
+    let mut items = 0;
+    let mut ended = |count: usize, limit: usize| items += ended(count, limit);
+    let mut scratch = memory.scratch();
+    for id in ids(total, simplices) {
+        ended(view.vertices(id).count(), 32);
+        ended(view.facets(id).count() + view.facets(id).rev().count(), 64);
+        ended(view.closure(id).count(), total);
+        ended(view.children(id).count() + view.siblings(id).count(), 2 * total);
+        for dim in 0..=view.dim().unwrap_or(0) + 1 {
+            ended(view.boundary(id, dim).count(), total);
+            ended(view.coboundary(id, dim, &mut scratch).map_or(0, Iterator::count), total + 31);
+            ended(view.k_adjacency(id, dim, &mut scratch).map_or(0, Iterator::count), total + 31);
+        }
+        ended(view.star(id, &mut scratch).map_or(0, Iterator::count), total + 31);
+        ended(view.restricted_star(id, &mut scratch).map_or(0, Iterator::count), total + 31);
+        ended(view.link(id, &mut scratch).map_or(0, Iterator::count), total + 31);
+        ended(view.adjacency(id, &mut scratch).map_or(0, Iterator::count), total + 31);
+        let word: Vec<VertexId> = view.vertices(id).collect();
+        ended(usize::from(view.find(&word).is_some()), 1);
+        ended(view.with_prefix(&word).count(), total);
+        ended(usize::from(view.is_top(id)) + usize::from(view.parent(id).is_some()), 2);
+        ended(usize::from(view.last_vertex(id).is_some()), 1);
+        ended(usize::from(view.labels().get(VertexId::new(id.index())).is_some()), 1);
     }
+    let _ = (view.euler_characteristic(), view.coordinates(), view.parity(), view.filtration());
+    assert!(memory.marks.iter().all(|&word| word == 0), "a query left marks behind");
+    items
+}
+
+/// Marks are whole words, so a damaged complex may report that many ids.
+fn memory<I: Index>(total: usize) -> Memory<I> {
+    Memory::new(total.div_ceil(32), 2 * total.min(4096), 4 * total.min(4096))
+}
+
+fn ids(total: usize, simplices: usize) -> impl Iterator<Item = SimplexId> {
+    (0..total.min(simplices)).chain([total, total + 7, usize::MAX]).map(SimplexId::new)
+}
+
+fn ended(count: usize, limit: usize) -> usize {
+    assert!(count <= limit, "{count} items, {limit} possible");
+    count
 }
 
 /// Computes the header's checksum anew, so that what was changed in the header or the table gets past it.

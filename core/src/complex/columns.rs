@@ -1,8 +1,7 @@
-//! What a complex carries beside its relations: labels, coordinates, orientations, filtration values, attributes.
+//! What the vertices are called: [`Labels`].
 
-use super::Complex;
-use crate::format::{Column, Section, SectionKind};
-use crate::id::{Dim, Index, VertexId};
+use crate::format::{Column, Container, SectionKind};
+use crate::id::VertexId;
 
 /// What the caller's data call the vertices.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +38,16 @@ impl core::fmt::Display for Label<'_> {
 }
 
 impl<'a> Labels<'a> {
+    /// The labels in a file.
+    pub(crate) fn of(container: &Container<'a>) -> Self {
+        let column = |kind| container.section(kind).map(|section| section.column);
+        match (column(SectionKind::IntegerLabels), column(SectionKind::LabelOffsets), column(SectionKind::LabelText)) {
+            (Some(Column::U64(labels)), ..) => Self::Integers(labels),
+            (_, Some(Column::U64(offsets)), Some(Column::U8(text))) => Self::Text { offsets, text },
+            _ => Self::Numbered,
+        }
+    }
+
     /// The label of a vertex; `None` past the end or if the text is not UTF-8.
     #[must_use]
     pub fn get(&self, vertex: VertexId) -> Option<Label<'a>> {
@@ -51,58 +60,6 @@ impl<'a> Labels<'a> {
                 let end = usize::try_from(*offsets.get(row.checked_add(1)?)?).ok()?;
                 core::str::from_utf8(text.get(start..end)?).ok().map(Label::Text)
             }
-        }
-    }
-}
-
-impl<'a, I: Index> Complex<'a, I> {
-    /// What the caller's data call the vertices.
-    #[must_use]
-    pub fn labels(&self) -> Labels<'a> {
-        let column = |kind| self.container().section(kind).map(|section| section.column);
-        match (column(SectionKind::IntegerLabels), column(SectionKind::LabelOffsets), column(SectionKind::LabelText)) {
-            (Some(Column::U64(labels)), ..) => Labels::Integers(labels),
-            (_, Some(Column::U64(offsets)), Some(Column::U8(text))) => Labels::Text { offsets, text },
-            _ => Labels::Numbered,
-        }
-    }
-
-    /// The coordinates of the vertices, row-major: as many components as the space has dimensions, single or double
-    /// precision.
-    #[must_use]
-    pub fn coordinates(&self) -> Option<Section<'a>> {
-        self.container().section(SectionKind::Coordinates)
-    }
-
-    /// The orientations: bit `i` is whether sorting the vertices of the `i`-th top simplex, in the order of the ids, was
-    /// an odd permutation of the order in which the caller gave them.
-    #[must_use]
-    pub fn parity(&self) -> Option<Column<'a>> {
-        self.container().section(SectionKind::Parity).map(|section| section.column)
-    }
-
-    /// The filtration value of each simplex.
-    #[must_use]
-    pub fn filtration(&self) -> Option<&'a [f64]> {
-        match self.container().section(SectionKind::Filtration)?.column {
-            Column::F64(values) => Some(values),
-            _ => None,
-        }
-    }
-
-    /// A named column over the simplices of one dimension.
-    #[must_use]
-    pub fn attribute(&self, dim: Dim, name: &str) -> Option<Section<'a>> {
-        let attributes = self.container().sections().filter(|section| section.kind == SectionKind::Attribute);
-        attributes.into_iter().find(|section| section.dim == Some(dim) && section.name == name)
-    }
-
-    /// Where the complex comes from, in its maker's words.
-    #[must_use]
-    pub fn provenance(&self) -> Option<&'a str> {
-        match self.container().section(SectionKind::Provenance)?.column {
-            Column::U8(text) => core::str::from_utf8(text).ok(),
-            _ => None,
         }
     }
 }

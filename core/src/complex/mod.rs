@@ -8,13 +8,18 @@ mod any;
 pub mod columns;
 mod levels;
 mod open;
-mod validate;
+mod sections;
+mod tree;
+pub(crate) mod validate;
 
 pub use any::AnyComplex;
 pub(crate) use levels::Levels;
+pub(crate) use sections::Sections;
 
-use crate::format::{Column, Container};
+use crate::format::Container;
 use crate::id::{Dim, Index, SimplexId};
+use crate::tree::Tree;
+use crate::view::common_methods;
 
 /// A simplicial complex as a Simplified Incidence Graph (sig-2004, 4), read where it lies.
 ///
@@ -38,81 +43,21 @@ pub struct Complex<'a, I> {
     pointers: &'a [I],
     lists: &'a [I],
     flags: &'a [u8],
-    tree: Option<TreeSections<'a, I>>,
+    tree: Option<Tree<'a, I>>,
 }
 
-/// The optional sections that make descending the simplex tree fast.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TreeSections<'a, I> {
-    pub(crate) child_offsets: &'a [I],
-    pub(crate) last_vertices: Column<'a>,
-}
+common_methods!(Complex);
 
 impl<'a, I: Index> Complex<'a, I> {
-    /// The dimension of the complex; `None` for the empty complex, whose dimension is −1.
-    #[must_use]
-    pub const fn dim(&self) -> Option<Dim> {
-        self.levels.dims().checked_sub(1)
-    }
-
-    /// The number of simplices of all dimensions.
-    #[must_use]
-    pub fn num_simplices(&self) -> usize {
-        self.levels.total()
-    }
-
-    /// n_p: the number of p-simplices.
-    #[must_use]
-    pub fn num_simplices_of_dim(&self, dim: Dim) -> usize {
-        self.levels.ids(dim).len()
-    }
-
-    /// n_0: the number of vertices.
-    #[must_use]
-    pub fn num_vertices(&self) -> usize {
-        self.num_simplices_of_dim(0)
-    }
-
-    /// All simplices, in the order of their ids.
-    #[must_use]
-    pub fn simplices(&self) -> SimplexRange {
-        SimplexRange::new(0..self.levels.total())
-    }
-
-    /// The p-simplices, in the order of their ids: lexicographically by their vertices.
-    #[must_use]
-    pub fn simplices_of_dim(&self, dim: Dim) -> SimplexRange {
-        SimplexRange::new(self.levels.ids(dim))
-    }
-
-    /// The dimension of a simplex; `None` past the end. Cost: O(d), a look-up in a table of d + 1 numbers.
+    /// The same complex as a simplex tree, if the file carries the tree's sections. Cost: O(1).
     #[must_use]
     #[inline]
-    pub fn dim_of(&self, simplex: SimplexId) -> Option<Dim> {
-        self.levels.dim_of(simplex.index())
-    }
-
-    /// χ = Σ (−1)^p n_p.
-    #[must_use]
-    pub fn euler_characteristic(&self) -> i64 {
-        (0..self.levels.dims()).fold(0, |sum, dim| {
-            let count = i64::try_from(self.num_simplices_of_dim(dim)).unwrap_or(i64::MAX);
-            if dim % 2 == 0 { sum + count } else { sum - count }
-        })
-    }
-
-    /// The file that the complex lies in.
-    #[must_use]
-    pub const fn container(&self) -> &Container<'a> {
-        &self.container
+    pub const fn as_tree(&self) -> Option<&Tree<'a, I>> {
+        self.tree.as_ref()
     }
 
     pub(crate) const fn levels(&self) -> &Levels {
         &self.levels
-    }
-
-    pub(crate) const fn tree_sections(&self) -> Option<&TreeSections<'a, I>> {
-        self.tree.as_ref()
     }
 
     /// F\[σ\]\[0..=p\] of p-simplex σ, p > 0: the facet in column i omits vertex i. Empty where there is no such row.

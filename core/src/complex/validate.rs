@@ -1,8 +1,10 @@
 //! The linear check that a buffer holds a complex in canonical order, with a partial co-boundary that fits it.
 
 use super::Complex;
-use crate::format::{Column, FormatError, Rule, SectionKind};
-use crate::id::{Dim, Index, SimplexId};
+use super::columns::Labels;
+use crate::format::{Column, Container, FormatError, Rule, SectionKind};
+use crate::id::{Dim, Index, SimplexId, VertexId};
+use crate::tree::validate_value;
 
 impl<I: Index> Complex<'_, I> {
     /// Checks every array: indices in range, the semi-simplicial identity, canonical order, lists in their places,
@@ -23,7 +25,9 @@ impl<I: Index> Complex<'_, I> {
         check_padding(SectionKind::Flags, self.flags, self.levels().flags_end())?;
         self.validate_partial_coboundary()?;
         self.validate_tree()?;
-        self.validate_columns()
+        self.validate_filtration()?;
+        self.validate_parity()?;
+        validate_columns(&self.container)
     }
 
     fn validate_boundary(&self) -> Result<(), FormatError> {
@@ -126,11 +130,11 @@ impl<I: Index> Complex<'_, I> {
     }
 
     fn validate_tree(&self) -> Result<(), FormatError> {
-        let Some(tree) = self.tree_sections() else { return Ok(()) };
+        let Some(tree) = self.as_tree() else { return Ok(()) };
         // The offset of a node is the number of nodes, of all dimensions but 0, whose parents come before it: walk
         // both in step.
         let mut child = self.num_vertices();
-        for (node, offset) in tree.child_offsets.iter().enumerate() {
+        for (node, offset) in tree.child_offsets().iter().enumerate() {
             while self.parent(SimplexId::new(child)).is_some_and(|parent| parent.index() < node) {
                 child += 1;
             }
@@ -139,11 +143,12 @@ impl<I: Index> Complex<'_, I> {
             }
         }
         for (dim, simplex) in self.each() {
-            if tree.last_vertices.index_at(simplex) != self.last_vertex_by_facets(dim, simplex) {
+            let last = tree.last_vertex(SimplexId::new(simplex)).map(VertexId::index);
+            if last != self.last_vertex_by_facets(dim, simplex) {
                 return Err(invalid(SectionKind::LastVertices, simplex, Rule::LastVertex));
             }
         }
-        Ok(())
+        tree.validate_lower()
     }
 
     /// All simplices with their dimensions.
@@ -151,39 +156,15 @@ impl<I: Index> Complex<'_, I> {
         (0..self.levels().dims()).flat_map(|dim| self.levels().ids(dim).map(move |simplex| (dim, simplex)))
     }
 
-    fn validate_columns(&self) -> Result<(), FormatError> {
-        if let Some(values) = self.filtration() {
-            self.validate_filtration(values)?;
-        }
-        for section in self.container().sections() {
-            match (section.kind, section.column) {
-                (SectionKind::Parity, Column::Bits { bytes, len }) => self.validate_parity(bytes, len)?,
-                (SectionKind::Provenance, Column::U8(text)) => {
-                    if let Err(error) = core::str::from_utf8(text) {
-                        return Err(invalid(SectionKind::Provenance, error.valid_up_to(), Rule::Text));
-                    }
-                }
-                (SectionKind::LabelOffsets, Column::U64(offsets)) => self.validate_labels(offsets)?,
-                (kind, Column::Bits { bytes, len }) if kind != SectionKind::Flags => check_padding(kind, bytes, len)?,
-                _ => {}
-            }
-        }
-        Ok(())
+    fn validate_filtration(&self) -> Result<(), FormatError> {
+        let Some(values) = self.filtration() else { return Ok(()) };
+        self.each().try_for_each(|(dim, simplex)| {
+            validate_value(values, simplex, self.row(dim, simplex).iter().map(|facet| facet.to_usize()))
+        })
     }
 
-    fn validate_filtration(&self, values: &[f64]) -> Result<(), FormatError> {
-        for (dim, simplex) in self.each() {
-            let value = values.get(simplex).copied().unwrap_or(f64::NAN);
-            let late_face = |facet: &I| values.get(facet.to_usize()).is_none_or(|&face| face > value);
-            let minus_zero = value == 0.0 && value.is_sign_negative();
-            if value.is_nan() || minus_zero || self.row(dim, simplex).iter().any(late_face) {
-                return Err(invalid(SectionKind::Filtration, simplex, Rule::Filtration));
-            }
-        }
-        Ok(())
-    }
-
-    fn validate_parity(&self, bytes: &[u8], len: usize) -> Result<(), FormatError> {
+    fn validate_parity(&self) -> Result<(), FormatError> {
+        let Some(Column::Bits { bytes, len }) = self.parity() else { return Ok(()) };
         // One more than there should be is enough to know; of vertices alone there may be more than the buffer has bytes.
         let tops = self.simplices().filter(|&simplex| self.is_top(simplex)).take(len.saturating_add(1)).count();
         if len != tops {
@@ -191,20 +172,37 @@ impl<I: Index> Complex<'_, I> {
         }
         check_padding(SectionKind::Parity, bytes, len)
     }
+}
 
-    /// Labels that every vertex has: text between offsets that start at 0, do not decrease, and end with the text.
-    fn validate_labels(&self, offsets: &[u64]) -> Result<(), FormatError> {
-        let labels = self.labels();
-        let vertex = |row: usize| crate::id::VertexId::new(row);
-        let text_len = self.container().section(SectionKind::LabelText).map_or(0, |text| text.column.len() as u64);
-        let broken = offsets.iter().enumerate().find(|&(row, &offset)| match row {
-            0 => offset != 0,
-            row => labels.get(vertex(row - 1)).is_none(),
-        });
-        let last = offsets.len().saturating_sub(1);
-        let broken = broken.map(|(row, _)| row).or((offsets.last() != Some(&text_len)).then_some(last));
-        broken.map_or(Ok(()), |row| Err(invalid(SectionKind::LabelOffsets, row, Rule::Labels)))
+/// Checks what a file carries beside its relations, but for filtration values and orientations: labels, text, padding.
+pub(crate) fn validate_columns(container: &Container<'_>) -> Result<(), FormatError> {
+    for section in container.sections() {
+        match (section.kind, section.column) {
+            (SectionKind::Provenance, Column::U8(text)) => {
+                if let Err(error) = core::str::from_utf8(text) {
+                    return Err(invalid(SectionKind::Provenance, error.valid_up_to(), Rule::Text));
+                }
+            }
+            (SectionKind::LabelOffsets, Column::U64(offsets)) => validate_labels(container, offsets)?,
+            (SectionKind::Flags | SectionKind::Parity, _) => {}
+            (kind, Column::Bits { bytes, len }) => check_padding(kind, bytes, len)?,
+            _ => {}
+        }
     }
+    Ok(())
+}
+
+/// Labels that every vertex has: text between offsets that start at 0, do not decrease, and end with the text.
+fn validate_labels(container: &Container<'_>, offsets: &[u64]) -> Result<(), FormatError> {
+    let labels = Labels::of(container);
+    let text_len = container.section(SectionKind::LabelText).map_or(0, |text| text.column.len() as u64);
+    let broken = offsets.iter().enumerate().find(|&(row, &offset)| match row {
+        0 => offset != 0,
+        row => labels.get(VertexId::new(row - 1)).is_none(),
+    });
+    let last = offsets.len().saturating_sub(1);
+    let broken = broken.map(|(row, _)| row).or((offsets.last() != Some(&text_len)).then_some(last));
+    broken.map_or(Ok(()), |row| Err(invalid(SectionKind::LabelOffsets, row, Rule::Labels)))
 }
 
 /// Checks that the bits from number `len` on are zero.
@@ -216,6 +214,6 @@ fn check_padding(section: SectionKind, bytes: &[u8], len: usize) -> Result<(), F
     }
 }
 
-fn invalid(section: SectionKind, element: usize, rule: Rule) -> FormatError {
+pub(crate) fn invalid(section: SectionKind, element: usize, rule: Rule) -> FormatError {
     FormatError::Invalid { section, element: element as u64, rule }
 }

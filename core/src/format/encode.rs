@@ -139,6 +139,12 @@ impl<'a> Encoder<'a> {
         self.header.file_bytes
     }
 
+    /// The sections before the checksums, and those after them.
+    fn parts(&self) -> [&'a [Section<'a>]; 2] {
+        let before = self.sections.partition_point(|section| section.kind < SectionKind::Checksums);
+        self.sections.split_at_checked(before).map_or([self.sections, &[]], |(before, after)| [before, after])
+    }
+
     /// The entries of the table, each with its offset.
     fn entries(&self) -> impl Iterator<Item = Entry> + use<'a> {
         let blocks: u64 = self.sections.iter().map(|section| num_blocks(section.column.as_bytes().len() as u64)).sum();
@@ -152,7 +158,9 @@ impl<'a> Encoder<'a> {
             name_len: 0,
         });
         let mut end = self.header.table_bytes() as u64;
-        self.sections.iter().map(unplaced_entry).chain(checksums).map(move |entry| {
+        let [before, after] = self.parts();
+        let entries = before.iter().map(unplaced_entry).chain(checksums).chain(after.iter().map(unplaced_entry));
+        entries.map(move |entry| {
             let offset = align_up(end).unwrap_or(u64::MAX);
             end = offset.saturating_add(byte_len(entry.element, entry.count).unwrap_or(u64::MAX));
             Entry { offset, ..entry }
@@ -198,11 +206,12 @@ impl<'a> Encoder<'a> {
         self.entries().try_for_each(|entry| sink(&entry.to_file_bytes()))?;
         names().filter(|name| !name.is_empty()).try_for_each(&mut sink)?;
         pad(self.header.table_bytes(), &mut sink)?;
-        for section in self.sections {
-            little_endian(&section.column, section.column.as_bytes(), &mut sink)?;
-            pad(section.column.as_bytes().len(), &mut sink)?;
+        let [before, after] = self.parts();
+        before.iter().try_for_each(|section| write_section(section, &mut sink))?;
+        if self.checksums {
+            self.write_checksums(crc, &mut sink)?;
         }
-        if self.checksums { self.write_checksums(crc, sink) } else { Ok(()) }
+        after.iter().try_for_each(|section| write_section(section, &mut sink))
     }
 
     fn write_checksums<E>(
@@ -227,6 +236,11 @@ impl<'a> Encoder<'a> {
         sink(&total.to_le_bytes())?;
         pad(written + 4, &mut sink)
     }
+}
+
+fn write_section<E>(section: &Section<'_>, sink: &mut impl FnMut(&[u8]) -> Result<(), E>) -> Result<(), E> {
+    little_endian(&section.column, section.column.as_bytes(), &mut *sink)?;
+    pad(section.column.as_bytes().len(), sink)
 }
 
 fn name_len(section: &Section<'_>) -> Option<u16> {

@@ -172,6 +172,15 @@ pub enum Rule {
     ChildOffset,
     /// Last vertices agree with the boundary.
     LastVertex,
+    /// The child offsets of a dimension do not decrease, from the start of the next dimension to its end.
+    OffsetOrder,
+    /// The last vertices of siblings increase strictly, are above that of their parent, and are vertices; that of vertex v
+    /// is v.
+    SiblingOrder,
+    /// All facets of a simplex are in the tree.
+    MissingFacet,
+    /// The lower neighbours of a vertex are the first ends of the edges that it ends, increasing.
+    LowerNeighbours,
     /// Filtration values are not NaN, not −0, and do not decrease along faces.
     Filtration,
     /// Labels are UTF-8 between increasing offsets.
@@ -256,6 +265,10 @@ impl fmt::Display for Rule {
             Self::MissingEntry => "a simplex with cofaces has an empty partial co-boundary",
             Self::ChildOffset => "a child offset disagrees with the boundary",
             Self::LastVertex => "a last vertex disagrees with the boundary",
+            Self::OffsetOrder => "a child offset is before the one before it, or in another dimension",
+            Self::SiblingOrder => "a last vertex is not above that of the sibling before it, or of its parent",
+            Self::MissingFacet => "a facet of the simplex is not in the tree",
+            Self::LowerNeighbours => "the lower neighbours of a vertex are not those of its edges, increasing",
             Self::Filtration => "a filtration value is NaN, −0, or less than that of a face",
             Self::Labels => "labels are not UTF-8 between increasing offsets",
             Self::Text => "text is not UTF-8",

@@ -1,6 +1,7 @@
 //! Sections and the typed columns in them.
 
 use core::fmt;
+use core::ops::Range;
 
 use crate::id::{Dim, Index, IndexWidth};
 
@@ -41,11 +42,15 @@ pub enum SectionKind {
     Provenance = 15,
     /// CRC-32 of the blocks of all other sections, and of these checksums at the end.
     Checksums = 16,
+    /// Where the lower neighbours of each vertex start, and the number of edges at the end.
+    LowerOffsets = 17,
+    /// The lower neighbours of each vertex, increasing: the other ends of its edges that come before it.
+    LowerNeighbours = 18,
 }
 
 impl SectionKind {
     /// Every kind, in the order of their numbers.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::Lookup,
         Self::Boundary,
         Self::Pointers,
@@ -62,6 +67,8 @@ impl SectionKind {
         Self::Attribute,
         Self::Provenance,
         Self::Checksums,
+        Self::LowerOffsets,
+        Self::LowerNeighbours,
     ];
 
     /// The number of the kind in the section table.
@@ -72,6 +79,11 @@ impl SectionKind {
 
     pub(super) fn from_code(code: u16) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
+    }
+
+    /// Whether files of kind SIG have the section and trees do not.
+    pub(crate) const fn is_of_sig_only(self) -> bool {
+        matches!(self, Self::Boundary | Self::Pointers | Self::Lists | Self::Flags | Self::Parity)
     }
 
     /// The name of the kind, as `FORMAT.md` has it.
@@ -94,6 +106,8 @@ impl SectionKind {
             Self::Attribute => "attribute",
             Self::Provenance => "provenance",
             Self::Checksums => "checksums",
+            Self::LowerOffsets => "lower-offsets",
+            Self::LowerNeighbours => "lower-neighbours",
         }
     }
 }
@@ -208,6 +222,27 @@ impl<'a> Column<'a> {
         }
     }
 
+    /// The first of the rows in `range`, whose integers increase, that holds `value` or more; the end of the range if none
+    /// does.
+    #[inline]
+    pub(crate) fn lower_bound(&self, range: Range<usize>, value: usize) -> usize {
+        let before = match self {
+            Self::U16(column) => num_below(column, &range, value),
+            Self::U32(column) => num_below(column, &range, value),
+            Self::U64(column) => num_below(column, &range, value),
+            _ => 0,
+        };
+        range.start + before
+    }
+
+    /// The row in `range`, whose integers increase, that holds `value`.
+    #[inline]
+    pub(crate) fn find(&self, range: Range<usize>, value: usize) -> Option<usize> {
+        let end = range.end;
+        let row = self.lower_bound(range, value);
+        (row < end && self.index_at(row) == Some(value)).then_some(row)
+    }
+
     pub(crate) const fn element_code(&self) -> u8 {
         match self {
             Self::Bits { .. } => 0,
@@ -235,6 +270,13 @@ impl<'a> Column<'a> {
         };
         (column.len() == len && bytes.len() as u64 == byte_len(code, len as u64)?).then_some(column)
     }
+}
+
+/// How many of the indices in a range, which increase, are less than a value.
+#[inline]
+fn num_below<I: Index>(column: &[I], range: &Range<usize>, value: usize) -> usize {
+    let indices = column.get(range.clone()).unwrap_or(&[]);
+    indices.partition_point(|index| index.to_usize() < value)
 }
 
 /// Bytes of an element of type `code`; `None` for bits and for unknown codes.

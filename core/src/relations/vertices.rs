@@ -20,11 +20,10 @@ impl<I: Index> Complex<'_, I> {
     #[inline]
     pub fn last_vertex(&self, simplex: SimplexId) -> Option<VertexId> {
         let dim = self.dim_of(simplex)?;
-        match self.tree_sections() {
-            Some(tree) => tree.last_vertices.index_at(simplex.index()),
-            None => self.last_vertex_by_facets(dim, simplex.index()),
+        match self.as_tree() {
+            Some(tree) => tree.last_vertex(simplex),
+            None => self.last_vertex_by_facets(dim, simplex.index()).map(VertexId::new),
         }
-        .map(VertexId::new)
     }
 
     /// The vertex that is left when the first vertex is dropped again and again.

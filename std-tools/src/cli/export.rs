@@ -4,9 +4,9 @@ use std::io;
 use std::path::PathBuf;
 
 use anyhow::Context;
-use sig_core::with_complex;
 use sig_tools::export::{self, ExportError, Format};
 use sig_tools::store::Access;
+use sig_tools::with_view;
 
 use super::input::Input;
 use super::{UsageError, output};
@@ -38,21 +38,19 @@ impl Args {
         let (path, existing) = (&self.target.output, self.target.existing());
         output::check(path, existing, std::slice::from_ref(&self.file))?;
         let input = Input::open(&self.file, Access::Normal)?;
-        let complex = input.complex();
+        let view = input.view();
         let file = || self.file.display().to_string();
         // As long as writing, and a damaged file would come out as a mesh that is another.
-        with_complex!(complex, complex => complex.validate())
+        with_view!(view, complex => complex.validate())
             .with_context(|| format!("{}: damaged; see sig verify", file()))?;
-        with_complex!(complex, complex => export::check(&complex, format)).with_context(file)?;
+        with_view!(view, complex => export::check(&complex, format)).with_context(file)?;
         let mut notes = Vec::new();
         output::to_path(path, existing, |out| {
             notes =
-                with_complex!(complex, complex => export::export(&complex, format, out)).map_err(
-                    |error| match error {
-                        ExportError::Io(error) => error,
-                        other => io::Error::other(other),
-                    },
-                )?;
+                with_view!(view, complex => export::export(&complex, format, out)).map_err(|error| match error {
+                    ExportError::Io(error) => error,
+                    other => io::Error::other(other),
+                })?;
             Ok(())
         })?;
         for note in notes {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use sig_core::complex::columns::Labels;
-use sig_core::format::{Column, SectionKind};
+use sig_core::format::{Column, Container, SectionKind};
 use sig_core::storage::{ClusterCounts, FileStorage, PaperStorage};
-use sig_core::{Complex, Dim, Index, with_complex};
+use sig_core::{Complex, Dim, Index, Relations, with_complex, with_tree};
+use sig_tools::View;
 use sig_tools::analysis::Analysis;
 use sig_tools::store::Access;
 
@@ -32,7 +33,10 @@ pub(super) struct Args {
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let input = Input::open(&self.file, Access::Sequential)?;
-        let summary = with_complex!(input.complex(), complex => Summary::new(&complex));
+        let summary = match input.view() {
+            View::Complex(any) => with_complex!(any, complex => Summary::of_complex(&complex)),
+            View::Tree(any) => with_tree!(any, tree => Summary::new(&tree, tree.container())),
+        };
         if self.json {
             output::json(&summary)?;
         } else {
@@ -45,11 +49,32 @@ impl Args {
 /// What is in a file; as JSON, the names of the fields.
 #[derive(Serialize)]
 struct Summary {
+    /// Told of trees only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<&'static str>,
     /// −1 for the empty complex.
     dimension: i64,
     simplices: Vec<usize>,
-    top_simplices: Vec<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    top_simplices: Option<Vec<usize>>,
     euler_characteristic: i64,
+    #[serde(flatten)]
+    facts: Option<Facts>,
+    index_bits: u32,
+    file_bytes: usize,
+    format_version: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    storage: Option<Storage>,
+    labels: &'static str,
+    coordinates: Option<Coordinates>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    provenance: Option<String>,
+    sections: Vec<Section>,
+}
+
+/// What a SIG tells at once, for it stores the relations.
+#[derive(Serialize)]
+struct Facts {
     components: usize,
     h_components: Vec<usize>,
     regular: bool,
@@ -58,15 +83,6 @@ struct Summary {
     clusters: Vec<Clusters>,
     /// Simplices with the paper's manifold flag, for each dimension.
     single_cluster: Vec<usize>,
-    index_bits: u32,
-    file_bytes: usize,
-    format_version: String,
-    storage: Storage,
-    labels: &'static str,
-    coordinates: Option<Coordinates>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    provenance: Option<String>,
-    sections: Vec<Section>,
 }
 
 #[derive(Serialize)]
@@ -122,10 +138,24 @@ impl Storage {
             overhead_bytes: file.overhead_bytes,
         }
     }
+
+    /// The integers and bits of the paper beside those of the file, as parts of the incidence graph's.
+    fn rows(&self) -> Vec<Vec<String>> {
+        let row = |name: &str, integers: usize, bits: usize| {
+            vec![name.to_owned(), grouped(integers), grouped(bits), percent(integers, self.incidence_graph_integers)]
+        };
+        vec![
+            vec!["storage".to_owned(), "integers".to_owned(), "bits".to_owned(), "of IG".to_owned()],
+            row("this file", self.file_integers, self.file_bits),
+            row("paper, 4.2", self.paper_integers, self.paper_bits),
+            row("paper, 4.2, no flags", self.paper_general_integers, self.paper_bits),
+            row("incidence graph, 7.1", self.incidence_graph_integers, 0),
+        ]
+    }
 }
 
 impl Summary {
-    fn new<I: Index>(complex: &Complex<'_, I>) -> Self {
+    fn of_complex<I: Index>(complex: &Complex<'_, I>) -> Self {
         let dims = complex.dim().map_or(0, |dim| dim + 1);
         let analysis = Analysis::new(complex);
         let counts: Vec<ClusterCounts> = (0..dims).map(|dim| complex.cluster_counts(dim)).collect();
@@ -133,23 +163,43 @@ impl Summary {
             let by_dim = counts.by_dim.iter().enumerate().filter(|(_, count)| **count > 0);
             by_dim.map(move |(g, &count)| Clusters { p, g, count })
         });
-        let file = complex.file_storage();
-        let (major, minor) = complex.container().header().version;
-        Self {
-            dimension: i64::try_from(dims).unwrap_or(i64::MAX) - 1,
-            simplices: (0..dims).map(|dim| complex.num_simplices_of_dim(dim)).collect(),
-            euler_characteristic: complex.euler_characteristic(),
+        let facts = Facts {
             components: analysis.components(),
             h_components: analysis.h_components,
             regular: analysis.is_regular,
             pseudo_manifold: analysis.is_pseudo_manifold,
-            top_simplices: analysis.top_simplices,
             clusters: clusters.collect(),
             single_cluster: counts.iter().map(|counts| counts.single_cluster).collect(),
-            index_bits: I::WIDTH.bits(),
-            file_bytes: file.file_bytes,
+        };
+        Self {
+            kind: None,
+            top_simplices: Some(analysis.top_simplices),
+            facts: Some(facts),
+            storage: Some(Storage::new(&complex.paper_storage(), &complex.file_storage())),
+            ..Self::new(complex, complex.container())
+        }
+    }
+
+    /// What every file tells by its header and table.
+    fn new(complex: &impl Relations, container: &Container<'_>) -> Self {
+        let dims = complex.dim().map_or(0, |dim| dim + 1);
+        let (major, minor) = container.header().version;
+        let sections = container.sections().map(|section| Section {
+            name: section.kind.name(),
+            dimension: section.dim,
+            bytes: section.column.as_bytes().len(),
+        });
+        Self {
+            kind: Some("tree"),
+            dimension: i64::try_from(dims).unwrap_or(i64::MAX) - 1,
+            simplices: (0..dims).map(|dim| complex.num_simplices_of_dim(dim)).collect(),
+            top_simplices: None,
+            euler_characteristic: complex.euler_characteristic(),
+            facts: None,
+            index_bits: container.header().width.bits(),
+            file_bytes: container.bytes().len(),
             format_version: format!("{major}.{minor}"),
-            storage: Storage::new(&complex.paper_storage(), &file),
+            storage: None,
             labels: match complex.labels() {
                 Labels::Numbered => "numbered",
                 Labels::Integers(_) => "integers",
@@ -159,16 +209,10 @@ impl Summary {
                 components: section.components,
                 bits: if matches!(section.column, Column::F32(_)) { 32 } else { 64 },
             }),
-            provenance: complex.provenance().map(str::to_owned),
-            sections: complex
-                .container()
-                .sections()
-                .map(|section| Section {
-                    name: section.kind.name(),
-                    dimension: section.dim,
-                    bytes: section.column.as_bytes().len(),
-                })
-                .collect(),
+            provenance: container
+                .section(SectionKind::Provenance)
+                .and_then(|section| std::str::from_utf8(section.column.as_bytes()).ok().map(str::to_owned)),
+            sections: sections.collect(),
         }
     }
 
@@ -176,8 +220,9 @@ impl Summary {
         let bytes = grouped(self.file_bytes);
         writeln!(
             out,
-            "{}: SIG {}, {bytes} bytes, {}-bit indices",
+            "{}: {} {}, {bytes} bytes, {}-bit indices",
             file.display(),
+            if self.kind.is_some() { "simplex tree" } else { "SIG" },
             self.format_version,
             self.index_bits
         )?;
@@ -189,47 +234,56 @@ impl Summary {
         writeln!(out)?;
         table(&self.fact_rows(), out)?;
         writeln!(out)?;
-        table(&self.storage_rows(), out)?;
-        writeln!(out)?;
+        if let Some(storage) = &self.storage {
+            table(&storage.rows(), out)?;
+            writeln!(out)?;
+        }
         table(&self.byte_rows(), out)
     }
 
-    /// A row for each dimension: how many simplices, top ones, κ_p^g, flagged ones.
+    /// A row for each dimension: how many simplices; of a SIG, top ones, κ_p^g, flagged ones.
     fn simplex_rows(&self) -> Vec<Vec<String>> {
-        let gs: Vec<Dim> = (1..self.simplices.len()).filter(|g| self.clusters.iter().any(|c| c.g == *g)).collect();
-        let mut head = vec!["dimension".to_owned(), "simplices".to_owned(), "top".to_owned()];
-        head.extend(gs.iter().map(|g| format!("{g}-clusters")));
-        head.push("single cluster".to_owned());
-        let count = |p: Dim, g: Dim| self.clusters.iter().find(|c| (c.p, c.g) == (p, g)).map_or(0, |c| c.count);
-        let row = |p: Dim| {
-            let mut row = vec![p.to_string(), grouped(self.simplices[p]), grouped(self.top_simplices[p])];
-            row.extend(gs.iter().map(|&g| if g > p { grouped(count(p, g)) } else { "-".to_owned() }));
-            row.push(grouped(self.single_cluster[p]));
-            row
-        };
         let sum = |counts: &[usize]| grouped(counts.iter().sum::<usize>());
-        let mut total = vec!["all".to_owned(), sum(&self.simplices), sum(&self.top_simplices)];
-        let all = |g: Dim| self.clusters.iter().filter(|c| c.g == g).map(|c| c.count).sum::<usize>();
-        total.extend(gs.iter().map(|&g| grouped(all(g))));
-        total.push(sum(&self.single_cluster));
-        std::iter::once(head).chain((0..self.simplices.len()).map(row)).chain([total]).collect()
+        let first = |name: &str, simplices: String| vec![name.to_owned(), simplices];
+        let head = first("dimension", "simplices".to_owned());
+        let rows = self.simplices.iter().enumerate().map(|(dim, &count)| first(&dim.to_string(), grouped(count)));
+        let mut rows: Vec<_> = std::iter::once(head).chain(rows).chain([first("all", sum(&self.simplices))]).collect();
+        let (Some(tops), Some(facts)) = (&self.top_simplices, &self.facts) else { return rows };
+        let mut add = |head: String, cells: &dyn Fn(Dim) -> String, total: String| {
+            let cells = (0..self.simplices.len()).map(cells);
+            let column = std::iter::once(head).chain(cells).chain([total]);
+            rows.iter_mut().zip(column).for_each(|(row, cell)| row.push(cell));
+        };
+        add("top".to_owned(), &|p| grouped(tops[p]), sum(tops));
+        let clusters = &facts.clusters;
+        for g in (1..self.simplices.len()).filter(|g| clusters.iter().any(|c| c.g == *g)) {
+            let count = |p: Dim| clusters.iter().find(|c| (c.p, c.g) == (p, g)).map_or(0, |c| c.count);
+            let all = clusters.iter().filter(|c| c.g == g).map(|c| c.count).sum::<usize>();
+            let cell = |p: Dim| if g > p { grouped(count(p)) } else { "-".to_owned() };
+            add(format!("{g}-clusters"), &cell, grouped(all));
+        }
+        let single = &facts.single_cluster;
+        add("single cluster".to_owned(), &|p| grouped(single[p]), sum(single));
+        rows
     }
 
     fn fact_rows(&self) -> Vec<Vec<String>> {
         let yes_no = |fact: bool| if fact { "yes" } else { "no" }.to_owned();
-        let mut rows = vec![
-            vec!["Euler characteristic".to_owned(), grouped(self.euler_characteristic)],
-            vec!["connected components".to_owned(), grouped(self.components)],
-        ];
-        for (h, &count) in self.h_components.iter().enumerate().skip(1) {
-            rows.push(vec![format!("{h}-connected components"), grouped(count)]);
+        let mut rows = vec![vec!["Euler characteristic".to_owned(), grouped(self.euler_characteristic)]];
+        if let Some(facts) = &self.facts {
+            rows.push(vec!["connected components".to_owned(), grouped(facts.components)]);
+            for (h, &count) in facts.h_components.iter().enumerate().skip(1) {
+                rows.push(vec![format!("{h}-connected components"), grouped(count)]);
+            }
         }
         let coordinates = match &self.coordinates {
             Some(Coordinates { components, bits }) => format!("{components} of {bits} bits"),
             None => "none".to_owned(),
         };
-        rows.push(vec!["regular".to_owned(), yes_no(self.regular)]);
-        rows.push(vec!["pseudo-manifold".to_owned(), yes_no(self.pseudo_manifold)]);
+        if let Some(facts) = &self.facts {
+            rows.push(vec!["regular".to_owned(), yes_no(facts.regular)]);
+            rows.push(vec!["pseudo-manifold".to_owned(), yes_no(facts.pseudo_manifold)]);
+        }
         rows.push(vec!["vertex labels".to_owned(), self.labels.to_owned()]);
         rows.push(vec!["coordinates".to_owned(), coordinates]);
         if let Some(provenance) = &self.provenance {
@@ -238,32 +292,32 @@ impl Summary {
         rows
     }
 
-    /// The integers and bits of the paper beside those of the file, as parts of the incidence graph's.
-    fn storage_rows(&self) -> Vec<Vec<String>> {
-        let storage = &self.storage;
-        let row = |name: &str, integers: usize, bits: usize| {
-            vec![name.to_owned(), grouped(integers), grouped(bits), percent(integers, storage.incidence_graph_integers)]
-        };
-        vec![
-            vec!["storage".to_owned(), "integers".to_owned(), "bits".to_owned(), "of IG".to_owned()],
-            row("this file", storage.file_integers, storage.file_bits),
-            row("paper, 4.2", storage.paper_integers, storage.paper_bits),
-            row("paper, 4.2, no flags", storage.paper_general_integers, storage.paper_bits),
-            row("incidence graph, 7.1", storage.incidence_graph_integers, 0),
-        ]
-    }
-
     fn byte_rows(&self) -> Vec<Vec<String>> {
-        let relations =
-            [SectionKind::Lookup, SectionKind::Boundary, SectionKind::Pointers, SectionKind::Lists, SectionKind::Flags];
-        let of_relations = |section: &&Section| relations.iter().any(|kind| kind.name() == section.name);
-        let relation_bytes = self.sections.iter().filter(of_relations).map(|section| section.bytes).sum();
+        let bytes_of = |of: &[SectionKind]| {
+            let sections = self.sections.iter().filter(|section| of.iter().any(|kind| kind.name() == section.name));
+            sections.map(|section| section.bytes).sum::<usize>()
+        };
+        let relations = bytes_of(&[
+            SectionKind::Lookup,
+            SectionKind::Boundary,
+            SectionKind::Pointers,
+            SectionKind::Lists,
+            SectionKind::Flags,
+        ]);
+        let tree = bytes_of(&[
+            SectionKind::ChildOffsets,
+            SectionKind::LastVertices,
+            SectionKind::LowerOffsets,
+            SectionKind::LowerNeighbours,
+        ]);
+        let checksums = bytes_of(&[SectionKind::Checksums]);
+        let all = self.sections.iter().map(|section| section.bytes).sum::<usize>();
         let parts = [
-            ("relations", relation_bytes),
-            ("simplex tree", self.storage.tree_bytes),
-            ("labels, coordinates, …", self.storage.other_bytes),
-            ("checksums", self.storage.checksum_bytes),
-            ("header and padding", self.storage.overhead_bytes),
+            (if self.kind.is_some() { "lookup" } else { "relations" }, relations),
+            ("simplex tree", tree),
+            ("labels, coordinates, …", all - relations - tree - checksums),
+            ("checksums", checksums),
+            ("header and padding", self.file_bytes - all),
             ("file", self.file_bytes),
         ];
         let row = |(name, bytes): (&str, usize)| vec![name.to_owned(), grouped(bytes), percent(bytes, self.file_bytes)];

@@ -4,9 +4,8 @@ use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
-use sig_core::AnyComplex;
 use sig_tools::store::{Access, OpenError};
-use sig_tools::{Loaded, Mapped};
+use sig_tools::{Loaded, Mapped, View};
 
 /// A file that is open.
 pub(super) enum Input {
@@ -31,10 +30,11 @@ impl Input {
         Ok(Self::Mapped(mapped))
     }
 
-    pub(super) fn complex(&self) -> AnyComplex<'_> {
+    /// The complex, of either kind.
+    pub(super) fn view(&self) -> View<'_> {
         match self {
-            Self::Mapped(mapped) => mapped.complex(),
-            Self::Loaded(loaded) => loaded.complex(),
+            Self::Mapped(mapped) => mapped.view(),
+            Self::Loaded(loaded) => loaded.view(),
         }
     }
 

@@ -17,6 +17,7 @@ mod man;
 mod output;
 mod progress;
 mod query;
+mod tree;
 mod tree_input;
 mod rips;
 mod verify;
@@ -61,6 +62,7 @@ enum Command {
     Expand(expand::Args),
     Collapse(collapse::Args),
     Contract(contract::Args),
+    Tree(tree::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -78,6 +80,7 @@ impl Command {
             Self::Expand(args) => args.run(),
             Self::Collapse(args) => args.run(),
             Self::Contract(args) => args.run(),
+            Self::Tree(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Man(args) => args.run(),
         }

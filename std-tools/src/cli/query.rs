@@ -3,12 +3,14 @@
 use std::io;
 use std::path::PathBuf;
 
+use anyhow::Context;
 use clap::ValueEnum;
 use serde::Serialize;
-use sig_core::{Complex, Dim, Index, SimplexId, with_complex};
-use sig_tools::OwnedScratch;
+use sig_core::format::{FormatError, SectionKind};
+use sig_core::{Complex, Dim, Index, Relations, SimplexId, with_complex};
 use sig_tools::names::{FindError, find_simplex, simplex_labels, simplex_name};
 use sig_tools::store::Access;
+use sig_tools::{OwnedScratch, View, with_view};
 
 use super::input::Input;
 use super::{UsageError, output};
@@ -85,21 +87,38 @@ impl Args {
             return Err(UsageError(message).into());
         }
         let input = Input::open(&self.file, Access::Random)?;
-        with_complex!(input.complex(), complex => self.answer(&complex, &labels))
+        match (input.view(), self.relation) {
+            (View::Complex(any), Relation::Clusters) => {
+                with_complex!(any, complex => self.answer_clusters(&complex, &labels))
+            }
+            (View::Tree(_), Relation::Clusters) => {
+                let file = self.file.display();
+                Err(FormatError::MissingSection(SectionKind::Lists)).with_context(|| {
+                    format!("{file}: a tree has no clusters; sig tree convert {file} -o OUT --kind sig computes them")
+                })
+            }
+            (view, _) => with_view!(view, complex => self.answer(&complex, &labels)),
+        }
     }
 
-    fn answer<I: Index>(&self, complex: &Complex<'_, I>, labels: &[&str]) -> anyhow::Result<()> {
+    fn simplex(&self, complex: &impl Relations, labels: &[&str]) -> anyhow::Result<SimplexId> {
         let simplex = find_simplex(complex, labels).map_err(|error| match error {
             FindError::RepeatedVertex { .. } => UsageError(error.to_string()).into(),
             error => anyhow::Error::new(error).context(self.file.display().to_string()),
         })?;
         self.check_dim(complex, simplex)?;
+        Ok(simplex)
+    }
+
+    fn answer_clusters<I: Index>(&self, complex: &Complex<'_, I>, labels: &[&str]) -> anyhow::Result<()> {
+        let simplex = self.simplex(complex, labels)?;
+        let clusters = clusters(complex, simplex, &mut OwnedScratch::new(complex));
+        Ok(if self.json { output::json(&clusters) } else { print_clusters(&clusters) }?)
+    }
+
+    fn answer<V: Relations>(&self, complex: &V, labels: &[&str]) -> anyhow::Result<()> {
+        let simplex = self.simplex(complex, labels)?;
         let mut memory = OwnedScratch::new(complex);
-        if self.relation == Relation::Clusters {
-            let clusters = clusters(complex, simplex, &mut memory);
-            let printed = if self.json { output::json(&clusters) } else { print_clusters(&clusters) };
-            return Ok(printed?);
-        }
         let mut found = self.find(complex, simplex, &mut memory);
         found.sort_unstable();
         if self.json {
@@ -114,7 +133,7 @@ impl Args {
     }
 
     /// Refuses a dimension where there is none to choose, or that the relation cannot have.
-    fn check_dim<I: Index>(&self, complex: &Complex<'_, I>, simplex: SimplexId) -> Result<(), UsageError> {
+    fn check_dim(&self, complex: &impl Relations, simplex: SimplexId) -> Result<(), UsageError> {
         let Some(dim) = self.dim else { return Ok(()) };
         let (own, top) = (complex.dim_of(simplex).unwrap_or(0), complex.dim().unwrap_or(0));
         let (name, range) = match self.relation {
@@ -134,11 +153,11 @@ impl Args {
         Err(UsageError(format!("--dim {dim}: for {name} of a simplex of dimension {own} {allowed}")))
     }
 
-    fn find<I: Index>(
+    fn find<V: Relations>(
         &self,
-        complex: &Complex<'_, I>,
+        complex: &V,
         simplex: SimplexId,
-        memory: &mut OwnedScratch<I>,
+        memory: &mut OwnedScratch<V::Index>,
     ) -> Vec<SimplexId> {
         let own = complex.dim_of(simplex).unwrap_or(0);
         match self.relation {

@@ -6,10 +6,9 @@ use std::path::Path;
 
 use anyhow::Context;
 use sig_core::format::MAGIC;
-use sig_core::with_complex;
-use sig_tools::Loaded;
 use sig_tools::simplex_tree::{SimplexTree, Vertices};
 use sig_tools::store::Access;
+use sig_tools::{Loaded, with_view};
 
 use super::input::Input;
 use super::{output, progress};
@@ -56,7 +55,7 @@ fn is_ours(head: &[u8]) -> bool {
 }
 
 fn thaw(input: &Input, name: &str) -> anyhow::Result<(SimplexTree, Vertices)> {
-    with_complex!(input.complex(), complex => {
+    with_view!(input.view(), complex => {
         complex.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
         SimplexTree::thaw_complex(&complex).with_context(|| name.to_owned())
     })

@@ -4,14 +4,14 @@ use std::io::{self, Write};
 
 use sig_core::complex::columns::{Label, Labels};
 use sig_core::format::{Column, Section, SectionKind};
-use sig_core::{Complex, Dim, Index, VertexId};
+use sig_core::{Dim, Relations, VertexId};
 
 use crate::tops::top_simplices;
 
 /// A complex as a mesh: its vertices in the order of their labels, which is the order of the input.
-pub(super) struct Mesh<'a, I> {
-    pub(super) complex: Complex<'a, I>,
-    coordinates: Section<'a>,
+pub(super) struct Mesh<'v, V> {
+    pub(super) complex: &'v V,
+    coordinates: Section<'v>,
     /// The vertices by label and the place of each among them; `None` if they are in that order.
     order: Option<Order>,
 }
@@ -21,10 +21,10 @@ struct Order {
     places: Vec<usize>,
 }
 
-impl<'a, I: Index> Mesh<'a, I> {
-    pub(super) fn new(complex: &Complex<'a, I>) -> Self {
+impl<'v, V: Relations> Mesh<'v, V> {
+    pub(super) fn new(complex: &'v V) -> Self {
         let none = Section { components: 3, ..Section::new(SectionKind::Coordinates, Column::F64(&[])) };
-        Self { complex: *complex, coordinates: complex.coordinates().unwrap_or(none), order: Order::new(complex) }
+        Self { complex, coordinates: complex.coordinates().unwrap_or(none), order: Order::new(complex) }
     }
 
     /// Coordinates a vertex.
@@ -93,8 +93,8 @@ impl<'a, I: Index> Mesh<'a, I> {
         mut cell: impl FnMut(&[usize]) -> io::Result<()>,
     ) -> io::Result<()> {
         let (mut vertices, mut places) = (Vec::new(), Vec::new());
-        for top in top_simplices(&self.complex).filter(|top| dims.contains(&top.dim)) {
-            top.oriented_vertices(&self.complex, &mut vertices);
+        for top in top_simplices(self.complex).filter(|top| dims.contains(&top.dim)) {
+            top.oriented_vertices(self.complex, &mut vertices);
             if vertices.len() != top.dim + 1 {
                 return Err(io::Error::other("a simplex without its vertices: the complex is not valid"));
             }
@@ -108,7 +108,7 @@ impl<'a, I: Index> Mesh<'a, I> {
     /// The number of top simplices of each of the dimensions 0 to 3.
     pub(super) fn num_cells(&self) -> [usize; 4] {
         let mut counts = [0; 4];
-        for top in top_simplices(&self.complex) {
+        for top in top_simplices(self.complex) {
             if let Some(count) = counts.get_mut(top.dim) {
                 *count += 1;
             }
@@ -135,7 +135,7 @@ impl<'a, I: Index> Mesh<'a, I> {
 }
 
 impl Order {
-    fn new<I: Index>(complex: &Complex<'_, I>) -> Option<Self> {
+    fn new(complex: &impl Relations) -> Option<Self> {
         let labels = complex.labels();
         if matches!(labels, Labels::Numbered) {
             return None;

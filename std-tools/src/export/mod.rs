@@ -16,7 +16,7 @@ mod vtu;
 use std::fmt;
 use std::io::{self, Write};
 
-use sig_core::{Complex, Dim, Index};
+use sig_core::{Dim, Relations};
 
 use mesh::Mesh;
 
@@ -166,7 +166,7 @@ impl fmt::Display for Note {
 ///
 /// # Errors
 /// All of [`ExportError`] but [`ExportError::Io`].
-pub fn check<I: Index>(complex: &Complex<'_, I>, format: Format) -> Result<(), ExportError> {
+pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError> {
     if let Some(dim) = complex.dim().filter(|&dim| dim > format.max_dim()) {
         return Err(ExportError::Dimension { format, dim });
     }
@@ -194,11 +194,7 @@ pub fn check<I: Index>(complex: &Complex<'_, I>, format: Format) -> Result<(), E
 ///
 /// # Errors
 /// [`ExportError`].
-pub fn export<I: Index>(
-    complex: &Complex<'_, I>,
-    format: Format,
-    out: &mut dyn Write,
-) -> Result<Vec<Note>, ExportError> {
+pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> Result<Vec<Note>, ExportError> {
     check(complex, format)?;
     let mut notes = Vec::new();
     if format == Format::SimplexList {

@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use sig_core::Index;
+use sig_core::Relations;
 
 use super::mesh::Mesh;
 
-pub(super) fn write<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     for vertex in mesh.vertices() {
         out.write_all(b"v ")?;
         mesh.write_point(vertex, out)?;

@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use sig_core::Index;
+use sig_core::Relations;
 
 use super::mesh::Mesh;
 
-pub(super) fn write<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     match mesh.components() {
         3 => writeln!(out, "OFF")?,
         components => writeln!(out, "nOFF\n{components}")?,

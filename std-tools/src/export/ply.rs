@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use sig_core::Index;
+use sig_core::Relations;
 
 use super::mesh::Mesh;
 
-pub(super) fn write<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     let scalar = if mesh.is_single() { "float" } else { "double" };
     let [_, edges, triangles, _] = mesh.num_cells();
     writeln!(out, "ply\nformat ascii 1.0\nelement vertex {}", mesh.num_vertices())?;

@@ -3,13 +3,13 @@
 use std::io::{self, Write};
 
 use sig_core::complex::columns::{Label, Labels};
-use sig_core::{Complex, Index, VertexId};
+use sig_core::{Relations, VertexId};
 
 use super::ExportError;
 use crate::tops::top_simplices;
 
 /// Checks that each label is read back as it is.
-pub(super) fn check_labels<I: Index>(complex: &Complex<'_, I>) -> Result<(), ExportError> {
+pub(super) fn check_labels(complex: &impl Relations) -> Result<(), ExportError> {
     let labels = complex.labels();
     if !matches!(labels, Labels::Text { .. }) {
         return Ok(());
@@ -25,7 +25,7 @@ pub(super) fn check_labels<I: Index>(complex: &Complex<'_, I>) -> Result<(), Exp
     Ok(())
 }
 
-pub(super) fn write<I: Index>(complex: &Complex<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(complex: &impl Relations, out: &mut dyn Write) -> io::Result<()> {
     let labels = complex.labels();
     let mut vertices = Vec::new();
     for top in top_simplices(complex) {

@@ -6,14 +6,14 @@ use std::io::{self, Write};
 
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
-use sig_core::Index;
+use sig_core::Relations;
 
 use super::mesh::Mesh;
 
 /// VTK's cell types of a vertex, a line, a triangle and a tetrahedron.
 const CELL_TYPES: [u8; 4] = [1, 3, 5, 10];
 
-pub(super) fn write<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     let counts = mesh.num_cells();
     let num_cells: usize = counts.iter().sum();
     let num_corners: usize = counts.iter().enumerate().map(|(dim, count)| (dim + 1) * count).sum();
@@ -52,7 +52,7 @@ pub(super) fn write<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Re
 }
 
 /// The points, filled up to three coordinates, in their own precision.
-fn points<I: Index>(mesh: &Mesh<'_, I>, out: &mut dyn Write) -> io::Result<()> {
+fn points<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     let (name, bytes) = if mesh.is_single() { ("Float32", 4) } else { ("Float64", 8) };
     let attributes = format!(r#"type="{name}" NumberOfComponents="3""#);
     array(out, &attributes, mesh.num_vertices() * 3 * bytes, |data| {

@@ -1,7 +1,7 @@
 //! Thawing: flat arrays become a tree that changes. What a tree has no place for, texts and large numbers as labels and
 //! coordinates, waits in [`Vertices`] for the tree to be frozen again.
 
-use sig_core::{Complex, Dim, Index, MAX_DIM, SimplexId};
+use sig_core::{Dim, MAX_DIM, Relations, SimplexId};
 
 use super::rebuild::{Growth, Member};
 use super::{SimplexTree, ThawError};
@@ -198,7 +198,7 @@ impl SimplexTree {
     ///
     /// # Errors
     /// [`ThawError`]: if the file is damaged, as far as this looks at it.
-    pub fn thaw_complex<I: Index>(complex: &Complex<'_, I>) -> Result<(Self, Vertices), ThawError> {
+    pub fn thaw_complex(complex: &impl Relations) -> Result<(Self, Vertices), ThawError> {
         let vertices = Vertices::new(names_of(complex), coordinates_of(complex));
         let filtration = complex.filtration();
         let levels = Levels {
@@ -216,7 +216,8 @@ impl SimplexTree {
     }
 }
 
-fn names_of<I: Index>(complex: &Complex<'_, I>) -> Labels {
+/// What a complex calls its vertices.
+pub(crate) fn names_of(complex: &impl Relations) -> Labels {
     use sig_core::complex::columns::Labels as Columns;
     match complex.labels() {
         Columns::Numbered => Labels::Numbered(complex.num_vertices()),
@@ -228,7 +229,8 @@ fn names_of<I: Index>(complex: &Complex<'_, I>) -> Labels {
     }
 }
 
-fn coordinates_of<I: Index>(complex: &Complex<'_, I>) -> Option<Coordinates> {
+/// The coordinates of the vertices of a complex.
+pub(crate) fn coordinates_of(complex: &impl Relations) -> Option<Coordinates> {
     use sig_core::format::Column;
     let section = complex.coordinates()?;
     let values = match section.column {

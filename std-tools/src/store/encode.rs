@@ -69,6 +69,7 @@ pub struct Encoding<'a> {
     indices: Vec<(SectionKind, Indices<'a>)>,
     flags: Option<(&'a [u8], usize)>,
     last_vertices: Option<Indices<'a>>,
+    lower_neighbours: Option<Indices<'a>>,
     labels: EncodedLabels<'a>,
     coordinates: Option<(u32, Column<'a>)>,
     parity: Option<(&'a [u8], usize)>,
@@ -98,6 +99,14 @@ impl<'a> Indices<'a> {
             IndexWidth::Bits16 => Self::Bits16(convert(values).into()),
             IndexWidth::Bits32 => Self::Bits32(convert(values).into()),
             IndexWidth::Bits64 => Self::Bits64(values.into()),
+        }
+    }
+
+    fn owned(values: Vec<u32>, width: IndexWidth) -> Self {
+        match width {
+            IndexWidth::Bits16 => Self::Bits16(convert(&values).into()),
+            IndexWidth::Bits32 => Self::Bits32(values.into()),
+            IndexWidth::Bits64 => Self::Bits64(convert(&values).into()),
         }
     }
 
@@ -169,16 +178,20 @@ impl<'a> Encoding<'a> {
         Ok(encoding)
     }
 
-    /// Lays out a simplex tree as a file of kind *tree*: labels and child offsets, no boundary, no co-boundary. Cost: as
-    /// [`new`](Self::new). [`EncodeOptions::tree`] has no meaning here.
+    /// Lays out a simplex tree as a file of kind *tree*: labels, child offsets and the lower neighbours of each vertex, no
+    /// boundary, no co-boundary. Cost: as [`new`](Self::new), and two passes over the edges. [`EncodeOptions::tree`] has no
+    /// meaning here.
     ///
     /// # Errors
     /// [`EncodeError::TooNarrow`] if a width is asked for that does not hold the complex.
     pub fn of_tree(tree: &'a FrozenTree, options: &EncodeOptions<'a>) -> Result<Self, EncodeError> {
         let largest = tree.num_simplices.saturating_sub(1) as u64;
         let mut encoding = Self::of_levels(Kind::Tree, &tree.first, tree.num_simplices, largest, options)?;
-        let child_offsets = Indices::from_u32(&tree.child_offsets, encoding.width);
-        encoding.indices.push((SectionKind::ChildOffsets, child_offsets));
+        let width = encoding.width;
+        encoding.indices.push((SectionKind::ChildOffsets, Indices::from_u32(&tree.child_offsets, width)));
+        let (offsets, neighbours) = lower_neighbours(tree);
+        encoding.indices.push((SectionKind::LowerOffsets, Indices::owned(offsets, width)));
+        encoding.lower_neighbours = Some(Indices::owned(neighbours, width_of_vertices(tree.num_vertices())));
         encoding.last_vertices = Some(match &tree.last_vertices {
             LastVertices::Bits16(vertices) => Indices::Bits16(vertices.into()),
             LastVertices::Bits32(vertices) => Indices::from_u32(vertices, width_of_vertices(tree.num_vertices())),
@@ -238,6 +251,7 @@ impl<'a> Encoding<'a> {
             indices: vec![(SectionKind::Lookup, lookup)],
             flags: None,
             last_vertices: None,
+            lower_neighbours: None,
             labels: EncodedLabels::Numbered,
             coordinates: None,
             parity: None,
@@ -262,6 +276,9 @@ impl<'a> Encoding<'a> {
         }
         if let Some(last_vertices) = &self.last_vertices {
             add(SectionKind::LastVertices, last_vertices.column());
+        }
+        if let Some(lower_neighbours) = &self.lower_neighbours {
+            add(SectionKind::LowerNeighbours, lower_neighbours.column());
         }
         match &self.labels {
             EncodedLabels::Numbered => {}
@@ -332,6 +349,28 @@ impl<'a> Encoding<'a> {
             Ok(bytes)
         })?
     }
+}
+
+/// The lower neighbours of all vertices, increasing for each, and where those of each vertex start.
+fn lower_neighbours(tree: &FrozenTree) -> (Vec<u32>, Vec<u32>) {
+    let (vertices, edges) = (tree.num_vertices(), tree.ids(1));
+    let mut offsets = vec![0_u32; vertices + 1];
+    for edge in edges.clone() {
+        offsets[tree.last_vertices.at(edge) as usize + 1] += 1;
+    }
+    for vertex in 0..vertices {
+        offsets[vertex + 1] += offsets[vertex];
+    }
+    let mut free = offsets.clone();
+    let mut neighbours = vec![0; edges.len()];
+    for (vertex, number) in (0..vertices).zip(0..) {
+        for edge in tree.children(vertex) {
+            let slot = &mut free[tree.last_vertices.at(edge) as usize];
+            neighbours[*slot as usize] = number;
+            *slot += 1;
+        }
+    }
+    (offsets, neighbours)
 }
 
 /// The coordinates as a column, and how many a vertex has.

@@ -6,10 +6,11 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
+use sig_core::AnyComplex;
 use sig_core::format::{FormatError, swap_byte_order};
-use sig_core::{AnyComplex, with_complex};
 
-use super::AlignedBytes;
+use super::{AlignedBytes, View};
+use crate::with_view;
 
 /// Why a file cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -59,9 +60,9 @@ fn check(path: &Path, bytes: &[u8]) -> Result<(), OpenError> {
     if bytes.is_empty() {
         return Err(OpenError::new(path, OpenErrorKind::Empty));
     }
-    let checked = AnyComplex::from_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
+    let checked = View::from_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
     // Vertices alone take no bytes, so a small file may promise more of them than any memory has marks for.
-    let simplices = with_complex!(checked, complex => complex.num_simplices());
+    let simplices = with_view!(checked, complex => complex.num_simplices());
     if simplices >> 36 != 0 && simplices / 64 > bytes.len() {
         return Err(OpenError::new(path, OpenErrorKind::TooManyVertices { vertices: simplices }));
     }
@@ -97,7 +98,7 @@ pub struct Mapped {
 }
 
 impl Mapped {
-    /// Maps the file at `path` and opens the complex in it as [`AnyComplex::from_bytes`] does.
+    /// Maps the file at `path` and opens the complex in it, a SIG or a tree, as [`View::from_bytes`] does.
     ///
     /// Cost: O(number of sections), the same for any number of simplices.
     ///
@@ -122,13 +123,21 @@ impl Mapped {
         Ok(Self { map })
     }
 
-    /// The complex in the file. Cost: O(number of sections).
+    /// The complex in the file, a SIG or a tree. Cost: O(number of sections).
     ///
     /// # Panics
     /// If another program has written into the header since the file was opened.
     #[must_use]
-    pub fn complex(&self) -> AnyComplex<'_> {
-        AnyComplex::from_bytes(&self.map).expect("a mapped file was changed by another program")
+    pub fn view(&self) -> View<'_> {
+        View::from_bytes(&self.map).expect("a mapped file was changed by another program")
+    }
+
+    /// The complex in a file of kind SIG. Cost: O(number of sections).
+    ///
+    /// # Errors
+    /// [`FormatError::WrongKind`] if the file is a tree, of which there is only a [`view`](Self::view).
+    pub fn complex(&self) -> Result<AnyComplex<'_>, FormatError> {
+        AnyComplex::from_bytes(&self.map)
     }
 
     /// The bytes of the file.
@@ -192,20 +201,28 @@ impl Loaded {
     /// The complex in the bytes of a file as it lies on disk.
     ///
     /// # Errors
-    /// [`FormatError`], as [`AnyComplex::from_bytes`] says.
+    /// [`FormatError`], as [`View::from_bytes`] says.
     pub fn from_file_bytes(mut bytes: AlignedBytes) -> Result<Self, FormatError> {
         if cfg!(target_endian = "big") {
             swap_byte_order(&mut bytes)?;
         }
-        AnyComplex::from_bytes(&bytes)?;
+        View::from_bytes(&bytes)?;
         Ok(Self { bytes })
     }
 
-    /// The complex. Cost: O(number of sections).
+    /// The complex, a SIG or a tree. Cost: O(number of sections).
     #[must_use]
     #[expect(clippy::missing_panics_doc, reason = "checked when the value was made, and nothing changes the bytes")]
-    pub fn complex(&self) -> AnyComplex<'_> {
-        AnyComplex::from_bytes(&self.bytes).expect("checked when loaded")
+    pub fn view(&self) -> View<'_> {
+        View::from_bytes(&self.bytes).expect("checked when loaded")
+    }
+
+    /// The complex of a file of kind SIG. Cost: O(number of sections).
+    ///
+    /// # Errors
+    /// [`FormatError::WrongKind`] if the file is a tree, of which there is only a [`view`](Self::view).
+    pub fn complex(&self) -> Result<AnyComplex<'_>, FormatError> {
+        AnyComplex::from_bytes(&self.bytes)
     }
 
     /// The bytes in memory, in the host's byte order.

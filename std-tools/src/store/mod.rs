@@ -12,8 +12,10 @@ mod scratch;
 #[cfg(test)]
 mod tests;
 pub mod verify;
+mod view;
 
 pub use bytes::AlignedBytes;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
 pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
 pub use scratch::OwnedScratch;
+pub use view::View;

@@ -1,6 +1,6 @@
 //! Memory for queries, on the heap.
 
-use sig_core::{Complex, Index, Scratch, ScratchError, mark_words};
+use sig_core::{Index, Relations, Scratch, ScratchError, mark_words};
 
 /// Memory for the queries on one complex: as much as any of them needs, and more on demand.
 ///
@@ -31,15 +31,17 @@ pub struct OwnedScratch<I> {
 impl<I: Index> OwnedScratch<I> {
     /// Memory for the queries on `complex`: a mark, a queue entry and an entry of the answer for each simplex.
     ///
-    /// That is enough for every query but [`k_adjacency`](Complex::k_adjacency) (and so
-    /// [`adjacency`](Complex::adjacency)) around very many simplices of high dimension, which gathers repetitions: see
+    /// That is enough for every query but [`k_adjacency`](Relations::k_adjacency) (and so
+    /// [`adjacency`](Relations::adjacency)) around very many simplices of high dimension, which gathers repetitions: see
     /// [`run`](Self::run).
     #[must_use]
-    pub fn new(complex: &Complex<'_, I>) -> Self {
-        // An answer has only simplices that stand in the buffer, and perhaps the one that was asked for.
-        let count = complex.num_simplices().min(complex.container().bytes().len());
+    pub fn new(complex: &impl Relations<Index = I>) -> Self {
+        let simplices = complex.num_simplices();
+        // Vertices without edges take no bytes, and there may be any number of them. An answer has none of them but the one
+        // that was asked for.
+        let count = if complex.dim() == Some(0) { 1 } else { simplices };
         Self {
-            marks: vec![0; mark_words(complex.num_simplices())],
+            marks: vec![0; mark_words(simplices)],
             queue: vec![I::ZERO; count],
             masks: vec![0; count],
             found: vec![I::ZERO; count],

@@ -193,7 +193,7 @@ fn mapped_and_loaded_are_the_same() {
     assert_eq!(mapped.bytes(), &*file);
     assert_eq!(*loaded.file_bytes(), *file);
     let count = |complex: AnyComplex<'_>| with_complex!(complex, complex => complex.num_simplices());
-    assert_eq!(count(mapped.complex()), count(loaded.complex()));
+    assert_eq!(count(mapped.complex().unwrap()), count(loaded.complex().unwrap()));
 }
 
 #[test]

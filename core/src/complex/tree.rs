@@ -1,14 +1,15 @@
 //! The arrays of the SIG as a simplex tree (simplex-tree-2012, 2.1): each node is a simplex, its word its vertices.
 //!
 //! In canonical order an id is the number of the node in level order: the parent drops the last vertex, the children of
-//! a node are consecutive. A file may carry the children's offsets and the last vertices; without them the same
-//! answers come from the boundary by binary search.
+//! a node are consecutive. A file may carry the tree's sections, and then the [`Tree`](crate::Tree) answers; without them
+//! the same answers come from the boundary by binary search.
 
 use core::cmp::Ordering;
 use core::ops::Range;
 
-use crate::complex::{Complex, SimplexRange};
+use super::{Complex, SimplexRange};
 use crate::id::{Dim, Index, SimplexId, VertexId};
+use crate::tree::Descendants;
 
 impl<I: Index> Complex<'_, I> {
     /// The parent in the simplex tree: the face without the last vertex; `None` for a vertex, whose parent is the root.
@@ -24,7 +25,8 @@ impl<I: Index> Complex<'_, I> {
     /// Cost: two reads where the file has child offsets; else two binary searches over the dimension above.
     #[must_use]
     pub fn children(&self, simplex: SimplexId) -> SimplexRange {
-        SimplexRange::new(self.child_range(simplex.index()))
+        self.as_tree()
+            .map_or_else(|| SimplexRange::new(self.child_range(simplex.index())), |tree| tree.children(simplex))
     }
 
     /// The children of the simplex's parent, the simplex among them: the vertices, for a vertex. Cost: as
@@ -44,6 +46,9 @@ impl<I: Index> Complex<'_, I> {
     /// dimension up to p, with up to p reads a comparison.
     #[must_use]
     pub fn find(&self, vertices: &[VertexId]) -> Option<SimplexId> {
+        if let Some(tree) = self.as_tree() {
+            return tree.find(vertices);
+        }
         let (first, rest) = vertices.split_first()?;
         let mut node = Some(first.index()).filter(|&vertex| vertex < self.num_vertices())?;
         let mut last = *first;
@@ -62,52 +67,42 @@ impl<I: Index> Complex<'_, I> {
     ///
     /// Cost: [`find`](Self::find), then two look-ups of children a dimension.
     #[must_use]
-    pub fn with_prefix(&self, prefix: &[VertexId]) -> Descendants<'_, I> {
-        let level = match self.find(prefix) {
-            _ if prefix.is_empty() => 0..self.num_vertices(),
-            Some(node) => node.index()..node.index() + 1,
-            None => 0..0,
-        };
-        Descendants { complex: self, next: level.clone(), level }
+    pub fn with_prefix(&self, prefix: &[VertexId]) -> Descendants<'_, Self> {
+        Descendants::new(self, prefix)
     }
 
-    /// The child of a node of dimension `dim` that ends with `vertex`.
+    /// The child of a node of dimension `dim` that ends with `vertex`, by the boundary.
     fn child(&self, dim: Dim, node: usize, vertex: usize) -> Option<usize> {
         let child_dim = dim + 1;
-        let found = match self.tree_sections() {
-            Some(tree) => partition_point(self.child_range(node), |child| {
-                tree.last_vertices.index_at(child).is_some_and(|last| last < vertex)
-            }),
-            None => partition_point(self.levels().ids(child_dim), |child| {
-                match self.facet(child_dim, child, child_dim).map_or(Ordering::Greater, |parent| parent.cmp(&node)) {
-                    Ordering::Equal => self.last_vertex_by_facets(child_dim, child).is_some_and(|last| last < vertex),
-                    order => order == Ordering::Less,
-                }
-            }),
-        };
+        let found = partition_point(self.levels().ids(child_dim), |child| {
+            match self.facet(child_dim, child, child_dim).map_or(Ordering::Greater, |parent| parent.cmp(&node)) {
+                Ordering::Equal => self.last_vertex_by_facets(child_dim, child).is_some_and(|last| last < vertex),
+                order => order == Ordering::Less,
+            }
+        });
         let is_it = self.levels().ids(child_dim).contains(&found)
             && self.facet(child_dim, found, child_dim) == Some(node)
-            && self.last_vertex(SimplexId::new(found)) == Some(VertexId::new(vertex));
+            && self.last_vertex_by_facets(child_dim, found) == Some(vertex);
         is_it.then_some(found)
     }
 
+    /// The children of a node, by the boundary.
     fn child_range(&self, node: usize) -> Range<usize> {
         let Some(child_dim) = self.levels().dim_of(node).map(|dim| dim + 1) else { return 0..0 };
         let level = self.levels().ids(child_dim);
-        let bound = |parent: usize| match self.tree_sections() {
-            Some(tree) => tree.child_offsets.get(parent).map_or(level.end, |offset| offset.to_usize()),
-            None => partition_point(level.clone(), |child| {
+        let bound = |parent: usize| {
+            partition_point(level.clone(), |child| {
                 self.facet(child_dim, child, child_dim).is_some_and(|other| other < parent)
-            }),
+            })
         };
-        // Clamped, for in a buffer that is not a complex an offset may be anything.
-        let start = bound(node).clamp(level.start, level.end);
-        start..bound(node + 1).clamp(start, level.end)
+        // Clamped, for in a buffer that is not a complex the parents need not be in order.
+        let start = bound(node);
+        start..bound(node + 1).max(start)
     }
 }
 
 /// The first of a range of which a predicate, true up to there, is false.
-fn partition_point(range: Range<usize>, is_before: impl Fn(usize) -> bool) -> usize {
+pub(crate) fn partition_point(range: Range<usize>, is_before: impl Fn(usize) -> bool) -> usize {
     let (mut low, mut high) = (range.start, range.end);
     while low < high {
         let middle = low + (high - low) / 2;
@@ -115,29 +110,3 @@ fn partition_point(range: Range<usize>, is_before: impl Fn(usize) -> bool) -> us
     }
     low
 }
-
-/// The descendants of a node and itself, by dimension, then lexicographically: see [`Complex::with_prefix`].
-#[derive(Clone, Debug)]
-pub struct Descendants<'a, I> {
-    complex: &'a Complex<'a, I>,
-    /// The descendants of one dimension: consecutive.
-    level: Range<usize>,
-    /// Those of them that were not handed out.
-    next: Range<usize>,
-}
-
-impl<I: Index> Iterator for Descendants<'_, I> {
-    type Item = SimplexId;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.next.is_empty() {
-            let last = self.level.end.checked_sub(1).filter(|_| !self.level.is_empty())?;
-            let first = self.complex.child_range(self.level.start).start;
-            self.level = first..self.complex.child_range(last).end;
-            self.next = self.level.clone();
-        }
-        self.next.next().map(SimplexId::new)
-    }
-}
-
-impl<I: Index> core::iter::FusedIterator for Descendants<'_, I> {}
