@@ -158,8 +158,10 @@ impl Bench {
 
     /// Figure 8, top: large Rips complexes, written and mapped; beside the paper's own figures.
     fn table_of_rips(&self) -> Result<()> {
-        println!("\n| data | points | r | k | edges | simplices | graph s | expansion s | ns | B | GUDHI graph s | \
-                  expansion s | ns | B | paper's simplices | graph s | s |");
+        println!(
+            "\n| data | points | r | k | edges | simplices | graph s | expansion s | ns | B | GUDHI graph s | \
+                  expansion s | ns | B | paper's simplices | graph s | s |"
+        );
         println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
         let bud = self.load("buddha_49950.obj.gz")?;
         let bro = self.load("natural_patches_15000x25.npy")?;
@@ -279,7 +281,8 @@ impl Bench {
     /// Figure 10, right.
     fn growth_with_dimension(&self) -> Result<()> {
         let Some(points) = self.load("cyclo_octane_6040x24.npy")? else { return Ok(()) };
-        let rows: Result<Vec<Row>> = (1..=10).map(|max_dim| self.rips_row(&points, 0.31, max_dim, max_dim as f64)).collect();
+        let rows: Result<Vec<Row>> =
+            (1..=10).map(|max_dim| self.rips_row(&points, 0.31, max_dim, max_dim as f64)).collect();
         self.draw("figure-10-dimension", "Rips complexes of Cy8, r = 0.31", "k", &rows?)
     }
 

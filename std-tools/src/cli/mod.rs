@@ -17,9 +17,9 @@ mod man;
 mod output;
 mod progress;
 mod query;
+mod rips;
 mod tree;
 mod tree_input;
-mod rips;
 mod verify;
 mod witness;
 
