@@ -203,8 +203,8 @@ impl Bench {
         let encoding = Encoding::of_tree(tree, &EncodeOptions { checksums: false, ..EncodeOptions::default() })?;
         encoding.write_to(&mut std::fs::File::create(&path)?)?;
         let map = sig_tools::Mapped::open(&path)?;
-        let counts: Vec<usize> = sig_core::with_tree!(map.tree().ok_or("not a tree")?, tree => {
-            (0..tree.dim().map_or(0, |dim| dim + 1)).map(|dim| tree.num_simplices_of_dim(dim)).collect()
+        let counts: Vec<usize> = sig_tools::with_view!(map.view(), view => {
+            (0..tree.first.len()).map(|dim| view.num_simplices_of_dim(dim)).collect()
         });
         if counts != tree.counts() {
             return Err("the mapped file is another complex".into());
