@@ -105,11 +105,14 @@ pub(super) struct Counter<'a> {
     /// Simplices that are not in the total yet.
     pending: u64,
     is_full: bool,
+    /// Bits are counted by one instruction where the processor has it.
+    arch: pulp::Arch,
 }
 
 impl<'a> Counter<'a> {
     pub(super) fn new(max_dim: Dim, total: &'a Total) -> Self {
-        Self { counts: vec![0; max_dim + 1], max_dim, total, pending: 0, is_full: false }
+        let counts = vec![0; max_dim + 1];
+        Self { counts, max_dim, total, pending: 0, is_full: false, arch: pulp::Arch::new() }
     }
 
     fn add(&mut self, dim: Dim, count: u64) {
@@ -144,9 +147,9 @@ impl<L: Index> Sink<L> for Counter<'_> {
     fn grow(&mut self, dim: Dim, nodes: Nodes<'_>, letters: &Letters<L>, below: &mut Batch) {
         let mut count = 0;
         if dim + 1 == self.max_dim {
-            nodes.for_each_child(letters, |_, mask| count += u64::from(mask.count_ones()));
+            nodes.for_each_child(letters, self.arch, |_, mask| count += u64::from(mask.count_ones()));
         } else {
-            nodes.for_each_child(letters, |_, mask| {
+            nodes.for_each_child(letters, self.arch, |_, mask| {
                 count += u64::from(mask.count_ones());
                 below.push(mask);
             });

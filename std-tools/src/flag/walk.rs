@@ -71,7 +71,7 @@ impl Batch {
     }
 
     /// Adds a node if it has candidates.
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, mask: u64) {
         // Written in any case: a branch would be mispredicted every other time.
         self.masks[self.len] = mask;
@@ -95,12 +95,35 @@ pub(super) struct Nodes<'a> {
 }
 
 impl Nodes<'_> {
-    /// Calls `visit` with the last letter and the candidates of every child, in order.
+    /// Calls `visit` with the last letter and the candidates of every child, in order; with the instructions for bits
+    /// that the processor has.
     #[inline]
-    pub(super) fn for_each_child<L: Index>(self, letters: &Letters<L>, mut visit: impl FnMut(usize, u64)) {
-        let Some((&first, _)) = self.masks.split_first() else { return };
+    pub(super) fn for_each_child<L: Index>(
+        self,
+        letters: &Letters<L>,
+        arch: pulp::Arch,
+        visit: impl FnMut(usize, u64),
+    ) {
+        arch.dispatch(Children { nodes: self, letters, visit });
+    }
+}
+
+/// The children of some nodes, to be visited by code for one kind of processor.
+struct Children<'a, L, F> {
+    nodes: Nodes<'a>,
+    letters: &'a Letters<L>,
+    visit: F,
+}
+
+impl<L: Index, F: FnMut(usize, u64)> pulp::WithSimd for Children<'_, L, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { nodes: Nodes { masks, count }, letters, mut visit } = self;
+        let Some((&first, _)) = masks.split_first() else { return };
         let (mut node, mut mask) = (0, first);
-        while node < self.count {
+        while node < count {
             let letter = mask.trailing_zeros() as usize % LETTERS;
             visit(letter, letters.below(mask, letter));
             mask &= mask.wrapping_sub(1);
@@ -108,7 +131,7 @@ impl Nodes<'_> {
             // would be mispredicted for each.
             let is_done = mask == 0;
             node += usize::from(is_done);
-            mask |= self.masks[node] & u64::from(is_done).wrapping_neg();
+            mask |= masks[node] & u64::from(is_done).wrapping_neg();
         }
     }
 }
@@ -234,7 +257,7 @@ impl<L: Index> Letters<L> {
     }
 
     /// The candidates of a child with last letter `letter` of a node with candidates `mask`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn below(&self, mask: u64, letter: usize) -> u64 {
         mask & self.rows[letter]
     }

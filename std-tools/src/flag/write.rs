@@ -75,7 +75,8 @@ impl Parts {
         child_offsets: &'a mut [u32],
     ) -> Vec<(&'a Part, Writer<'a, L>)> {
         let mut child_offsets = &mut child_offsets[..first.last().copied().unwrap_or(0)];
-        let writer = |part| (part, Writer { levels: Vec::with_capacity(first.len()) });
+        let arch = pulp::Arch::new();
+        let writer = |part| (part, Writer { levels: Vec::with_capacity(first.len()), arch });
         let mut writers: Vec<_> = self.parts.iter().map(writer).collect();
         let mut start = 0;
         for (dim, part, len) in self.lengths() {
@@ -98,6 +99,8 @@ impl Parts {
 /// What one part writes.
 struct Writer<'a, L> {
     levels: Vec<Level<'a, L>>,
+    /// Bits are counted and found by one instruction each where the processor has them.
+    arch: pulp::Arch,
 }
 
 /// The simplices of one dimension that one part writes.
@@ -142,24 +145,26 @@ impl<L: Index> Sink<L> for Writer<'_, L> {
     fn grow(&mut self, dim: Dim, nodes: Nodes<'_>, letters: &Letters<L>, below: &mut Batch) {
         let mut first_child = self.levels[dim + 1].next;
         let level = &mut self.levels[dim];
-        let mut done = level.done;
-        nodes.for_each_child(letters, |letter, mask| {
-            level.labels[done] = letters.names[letter];
-            level.child_offsets[done] = first_child;
+        let (labels, child_offsets) = (&mut level.labels[level.done..], &mut level.child_offsets[level.done..]);
+        let mut done = 0;
+        nodes.for_each_child(letters, self.arch, |letter, mask| {
+            labels[done] = letters.names[letter];
+            child_offsets[done] = first_child;
             first_child += mask.count_ones();
             below.push(mask);
             done += 1;
         });
-        level.advance(done);
+        level.advance(level.done + done);
     }
 
     fn leaves(&mut self, dim: Dim, nodes: Nodes<'_>, letters: &Letters<L>) {
         let level = &mut self.levels[dim];
-        let mut done = level.done;
-        nodes.for_each_child(letters, |letter, _| {
-            level.labels[done] = letters.names[letter];
+        let labels = &mut level.labels[level.done..];
+        let mut done = 0;
+        nodes.for_each_child(letters, self.arch, |letter, _| {
+            labels[done] = letters.names[letter];
             done += 1;
         });
-        level.advance(done);
+        level.advance(level.done + done);
     }
 }
