@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
 use crate::build::SigArrays;
@@ -17,11 +18,23 @@ pub(super) struct Blocks {
     pub(super) edges: ByLastVertex,
     /// The triangles, by their last vertex.
     pub(super) triangles: ByLastVertex,
+    /// The edges with that vertex of each triangle, in the same order: without its first vertex, and without its second.
+    edges_of_triangles: Vec<[usize; 2]>,
 }
 
 impl Blocks {
     pub(super) fn new<I: Index>(arrays: &SigArrays<I>) -> Self {
-        Self { edges: ByLastVertex::new(arrays, 1), triangles: ByLastVertex::new(arrays, 2) }
+        let (edges, triangles) = (ByLastVertex::new(arrays, 1), ByLastVertex::new(arrays, 2));
+        let rows = arrays.facets(2);
+        let edge = |triangle: usize, i: usize| rows[triangle * 3 + i].to_usize() - arrays.first[1];
+        let edges_of = |&triangle: &usize| [edge(triangle, 0), edge(triangle, 1)];
+        let edges_of_triangles = triangles.numbers.par_iter().map(edges_of).collect();
+        Self { edges, triangles, edges_of_triangles }
+    }
+
+    /// The edges of the triangles whose last vertex is `vertex`.
+    pub(super) fn edges_of_triangles(&self, vertex: usize) -> &[[usize; 2]] {
+        &self.edges_of_triangles[self.triangles.range(vertex)]
     }
 }
 
@@ -54,7 +67,19 @@ impl ByLastVertex {
 
     #[inline]
     pub(super) fn of(&self, vertex: usize) -> &[usize] {
-        &self.numbers[self.starts[vertex]..self.starts[vertex + 1]]
+        &self.numbers[self.range(vertex)]
+    }
+
+    /// Where those of a vertex stand.
+    #[inline]
+    pub(super) fn range(&self, vertex: usize) -> Range<usize> {
+        self.starts[vertex]..self.starts[vertex + 1]
+    }
+
+    /// What lies between two of `starts`, such as [`descendants`], for each simplex in this order: looked up here once, as
+    /// they are far apart there.
+    pub(super) fn ranges(&self, starts: &[usize]) -> Vec<Range<usize>> {
+        self.numbers.par_iter().map(|&number| starts[number]..starts[number + 1]).collect()
     }
 }
 

@@ -165,6 +165,8 @@ struct Level<'a, I> {
     arrays: &'a SigArrays<I>,
     blocks: &'a Blocks,
     p: Dim,
+    /// The facets of the simplices of dimension p + 2.
+    coface_rows: &'a [I],
     /// The clusters of the simplices of dimension p + 1, and in which of them those of dimension p + 2 lie.
     clusters: &'a Clusters<I>,
     up: &'a Up<I>,
@@ -175,7 +177,8 @@ struct Level<'a, I> {
     coface_blocks: Vec<usize>,
     cofacets_of_edges: Vec<usize>,
     cofaces_of_edges: Vec<usize>,
-    cofaces_of_triangles: Vec<usize>,
+    /// By last vertex.
+    cofaces_of_triangles: Vec<Range<usize>>,
     /// What is added (wrapping) to the number of a cluster of a descendant of an edge to make it an item of the block of
     /// the last vertex.
     of_edges: Vec<usize>,
@@ -248,6 +251,7 @@ impl<'a, I: Index> Level<'a, I> {
             arrays,
             blocks,
             p,
+            coface_rows: arrays.facets(p + 2),
             clusters,
             up,
             of_cofaces,
@@ -256,7 +260,7 @@ impl<'a, I: Index> Level<'a, I> {
             coface_blocks: descendants(arrays, 0, p + 2),
             cofacets_of_edges,
             cofaces_of_edges: descendants(arrays, 1, p + 2),
-            cofaces_of_triangles: descendants(arrays, 2, p + 2),
+            cofaces_of_triangles: blocks.triangles.ranges(&descendants(arrays, 2, p + 2)),
         }
     }
 
@@ -336,7 +340,7 @@ impl<'a, I: Index> Level<'a, I> {
     #[inline(always)]
     fn for_each_cluster(&self, cofaces: Range<usize>, mut visit: impl FnMut(&[I], (usize, usize))) {
         let len = self.p + 3;
-        let rows = &self.arrays.facets(self.p + 2)[cofaces.start * len..cofaces.end * len];
+        let rows = &self.coface_rows[cofaces.start * len..cofaces.end * len];
         for (coface, facets) in cofaces.zip(rows.chunks_exact(len)) {
             for cluster in 0..self.of_cofaces.of(coface).len() {
                 visit(facets, (coface, cluster));
@@ -377,14 +381,9 @@ impl<'a, I: Index> Level<'a, I> {
 
     /// Joins what the cofaces with two vertices before the block join.
     fn join_from_triangles(&self, block: &Block, sets: &mut Sets) {
-        let edge_rows = self.arrays.facets(2);
-        for &triangle in self.blocks.triangles.of(block.vertex) {
-            let cofaces = self.cofaces_of_triangles[triangle]..self.cofaces_of_triangles[triangle + 1];
-            if cofaces.is_empty() {
-                continue;
-            }
-            let edges = [0, 1].map(|i| edge_rows[triangle * 3 + i].to_usize() - self.arrays.first[1]);
-            self.for_each_cluster(cofaces, |facets, coface| {
+        let cofaces = &self.cofaces_of_triangles[self.blocks.triangles.range(block.vertex)];
+        for (cofaces, edges) in cofaces.iter().zip(self.blocks.edges_of_triangles(block.vertex)) {
+            self.for_each_cluster(cofaces.clone(), |facets, coface| {
                 let [a, b] = [0, 1].map(|i| self.item_of_edge(edges[i], facets[i], coface));
                 sets.join(a, b);
             });
