@@ -6,7 +6,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 use sig_core::Index;
 
-use crate::build::{Arrays, SigArrays, index};
+use crate::build::blocks::Blocks;
+use crate::build::{Arrays, SigArrays, cofaces, index};
 
 /// Simplices whose lists one task writes; a multiple of eight, for the flags.
 const TASK: usize = 1 << 14;
@@ -18,6 +19,33 @@ where
     Arrays: From<SigArrays<I>>,
 {
     let count = arrays.first.last().copied().unwrap_or(0);
+    pack_parts(arrays, count, None, write)
+}
+
+/// As [`pack`], but `write` is called for simplices below dimension d − 1 only: in that one the lists are the cofacets.
+pub(super) fn pack_below_facets<I: Index>(
+    arrays: SigArrays<I>,
+    blocks: &Blocks,
+    write: impl Fn(Range<usize>, &mut Part<I>) + Sync,
+) -> Arrays
+where
+    Arrays: From<SigArrays<I>>,
+{
+    let count = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
+    pack_parts(arrays, count, Some(blocks), write)
+}
+
+/// Writes the lists of the first `count` simplices by `write`, those of the others below dimension d as their cofacets.
+fn pack_parts<I: Index>(
+    arrays: SigArrays<I>,
+    count: usize,
+    blocks: Option<&Blocks>,
+    write: impl Fn(Range<usize>, &mut Part<I>) + Sync,
+) -> Arrays
+where
+    Arrays: From<SigArrays<I>>,
+{
+    let top_start = arrays.first.last().copied().unwrap_or(0);
     // Only simplices two dimensions below the tops are flagged.
     let flaggable = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
     let parts: Vec<Part<I>> = (0..count.div_ceil(TASK))
@@ -27,7 +55,7 @@ where
             let mut part = Part {
                 next: range.start,
                 flaggable,
-                top_start: count,
+                top_start,
                 pointers: Vec::with_capacity(range.len()),
                 lists: Vec::new(),
                 flags: vec![0; range.len().div_ceil(8)],
@@ -36,11 +64,12 @@ where
             part
         })
         .collect();
-    let len = parts.iter().map(|part| part.lists.len()).sum();
+    let num_cofacets = blocks.and(arrays.dim()).filter(|&dim| dim > 0).map_or(0, |dim| cofaces::len(&arrays, dim));
+    let len = parts.iter().map(|part| part.lists.len()).sum::<usize>() + num_cofacets;
     if I::from_usize(len).is_some() {
-        concatenate(arrays, parts, len).into()
+        concatenate(arrays, parts, len, blocks).into()
     } else {
-        concatenate(arrays.widen(), parts, len).into()
+        concatenate(arrays.widen(), parts, len, blocks).into()
     }
 }
 
@@ -115,13 +144,19 @@ impl<I: Index> Part<I> {
     }
 }
 
-/// Completes `arrays` with the parts, whose lists take `len` entries.
-fn concatenate<I: Index, J: Index>(mut arrays: SigArrays<J>, parts: Vec<Part<I>>, len: usize) -> SigArrays<J> {
+/// Completes `arrays` with the parts, and with the cofacets of the simplices that are in none; the lists take `len`
+/// entries.
+fn concatenate<I: Index, J: Index>(
+    mut arrays: SigArrays<J>,
+    parts: Vec<Part<I>>,
+    len: usize,
+    blocks: Option<&Blocks>,
+) -> SigArrays<J> {
     let count = arrays.first.last().copied().unwrap_or(0);
-    arrays.pointers = vec![J::ZERO; count];
-    arrays.lists = vec![J::ZERO; len];
+    let (mut all_pointers, mut all_lists) = (vec![J::ZERO; count], vec![J::ZERO; len]);
     arrays.flags = parts.iter().flat_map(|part| part.flags.iter().copied()).collect();
-    let (mut pointers, mut lists) = (arrays.pointers.as_mut_slice(), arrays.lists.as_mut_slice());
+    arrays.flags.resize(count.div_ceil(8), 0);
+    let (mut pointers, mut lists) = (all_pointers.as_mut_slice(), all_lists.as_mut_slice());
     let mut start = 0;
     let mut jobs = Vec::with_capacity(parts.len());
     for part in parts {
@@ -131,6 +166,11 @@ fn concatenate<I: Index, J: Index>(mut arrays: SigArrays<J>, parts: Vec<Part<I>>
         jobs.push((part, start - lists.len(), pointers, lists));
     }
     jobs.into_par_iter().for_each(|(part, start, pointers, lists)| part.copy_to(start, pointers, lists));
+    if let (Some(blocks), Some(dim @ 1..)) = (blocks, arrays.dim()) {
+        cofaces::write(&arrays, blocks, dim, (pointers, lists), start);
+    }
+    arrays.pointers = all_pointers;
+    arrays.lists = all_lists;
     arrays
 }
 
@@ -155,6 +195,6 @@ mod tests {
             flags: vec![0; 5_000],
         }];
         let arrays = SigArrays::<u32> { first: vec![0, 40_000], num_simplices: 40_001, ..SigArrays::default() };
-        assert_eq!(concatenate(arrays, parts, 80_000), narrow);
+        assert_eq!(concatenate(arrays, parts, 80_000, None), narrow);
     }
 }

@@ -13,7 +13,9 @@
 //! the number of threads. Work runs in rayon's current pool.
 
 mod assemble;
+mod blocks;
 mod clusters;
+mod cofaces;
 mod complete;
 mod facets;
 mod levels;
@@ -370,11 +372,7 @@ pub(crate) fn ids(first: &[usize], num_simplices: usize, dim: Dim) -> std::ops::
 
 /// Adds the partial co-boundary relations to the arrays of the faces, and reads off what is known of the listed
 /// simplices (`listed`: one byte a simplex, see [`local`]).
-fn finish<I: clusters::Cell>(
-    arrays: SigArrays<I>,
-    listed: &[Vec<u8>],
-    meter: &Meter<'_>,
-) -> (Arrays, Vec<u8>, report::Counts)
+fn finish<I: Index>(arrays: SigArrays<I>, listed: &[Vec<u8>], meter: &Meter<'_>) -> (Arrays, Vec<u8>, report::Counts)
 where
     Arrays: From<SigArrays<I>>,
 {

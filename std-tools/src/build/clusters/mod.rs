@@ -10,9 +10,11 @@ mod minima;
 mod sets;
 mod union;
 
-pub(super) use sets::Cell;
 use sig_core::Index;
 
+use crate::build::blocks::Blocks;
+use crate::build::limits::Stage;
+use crate::build::lists::pack_below_facets;
 use crate::build::{Arrays, Meter, Phase, SigArrays, pack};
 
 /// Pairs (top simplex, face) for each simplex up to which walking stars is the faster way. Meshes of dimension 3 to 5
@@ -21,7 +23,7 @@ const MANY_FACES: usize = 16;
 
 /// Completes the arrays of the faces with the relations. `is_top[p]` tells which p-simplices are top, or is empty if
 /// none is.
-pub(super) fn add<I: Cell>(arrays: SigArrays<I>, is_top: &[Vec<bool>], meter: &Meter<'_>) -> Arrays
+pub(super) fn add<I: Index>(arrays: SigArrays<I>, is_top: &[Vec<bool>], meter: &Meter<'_>) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
@@ -37,10 +39,19 @@ where
             pack(arrays, |ids, part| minima.write(ids, part))
         }
     } else {
-        let relations = union::find(&arrays, &stage);
-        let first = arrays.first.clone();
-        pack(arrays, |ids, part| union::write(&relations, &first, ids, part))
+        by_union(arrays, &stage)
     }
+}
+
+/// The arrays with the relations by union-find.
+fn by_union<I: Index>(arrays: SigArrays<I>, stage: &Stage<'_>) -> Arrays
+where
+    Arrays: From<SigArrays<I>>,
+{
+    let blocks = Blocks::new(&arrays);
+    let relations = union::find(&arrays, &blocks, stage);
+    let first = arrays.first.clone();
+    pack_below_facets(arrays, &blocks, |ids, part| union::write(&relations, &first, ids, part))
 }
 
 #[cfg(test)]
@@ -52,21 +63,12 @@ mod tests {
     use crate::soup::{Labels, Soup};
 
     /// The arrays with the lists by local minima.
-    fn by_minima<I: Cell, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> SigArrays<u64>
+    fn by_minima<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> SigArrays<u64>
     where
         Arrays: From<SigArrays<I>>,
     {
         let minima = minima::find::<I, L>(arrays, is_top, &Meter::new(None).stage(Phase::Coboundary, 0));
         pack(arrays.clone(), |ids, part| minima.write(ids, part)).into_wide()
-    }
-
-    /// The arrays with the lists by union-find.
-    fn by_union<I: Cell>(arrays: &SigArrays<I>) -> SigArrays<u64>
-    where
-        Arrays: From<SigArrays<I>>,
-    {
-        let relations = union::find(arrays, &Meter::new(None).stage(Phase::Coboundary, 0));
-        pack(arrays.clone(), |ids, part| union::write(&relations, &arrays.first, ids, part)).into_wide()
     }
 
     proptest! {
@@ -89,11 +91,13 @@ mod tests {
                     is_top[dim - 1][facet.to_usize() - arrays.first[dim - 1]] = false;
                 }
             }
-            let expected = by_union(&arrays);
+            let meter = Meter::new(None);
+            let stage = meter.stage(Phase::Coboundary, 0);
+            let expected = by_union(arrays.clone(), &stage).into_wide();
             prop_assert_eq!(by_minima::<_, u32>(&arrays, &is_top), expected.clone());
             let wide = arrays.clone().widen();
             prop_assert_eq!(by_minima::<_, u64>(&wide, &is_top), expected.clone());
-            prop_assert_eq!(by_union(&wide), expected);
+            prop_assert_eq!(by_union(wide, &stage).into_wide(), expected);
         }
     }
 }
