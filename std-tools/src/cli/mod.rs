@@ -43,7 +43,7 @@ const EXAMPLES: &str = "\
 Examples:
   sig build bunny.off -o bunny.sigc     a mesh becomes a complex with all its relations
   sig rips cloud.npy -r 0.3 -o c.sigc   the Rips complex of points
-  sig witness cloud.npy --maxmin 300 -o w.sigc   the witness complex of some landmarks among them
+  sig witness c.npy --maxmin 300 -o w.sigc  the witness complex of 300 landmarks among them
   sig collapse c.sigc -o small.sigc     fewer simplices, the same homotopy type
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
