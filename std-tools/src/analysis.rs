@@ -144,7 +144,7 @@ mod tests {
     use proptest::prelude::*;
     use sig_core::Complex;
 
-    use super::Analysis;
+    use super::{Analysis, num_top_simplices};
     use crate::build::{BuildOptions, build};
     use crate::soup::{Labels, Soup};
     use crate::store::{EncodeOptions, Encoding};
