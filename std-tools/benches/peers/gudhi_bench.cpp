@@ -82,6 +82,11 @@ std::size_t resident() {
   return 0;
 }
 
+std::size_t allocated() {
+  auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
 template <bool KEYS, bool VALUES, bool LINKED>
 struct Options {
   using Indexing_tag = Gudhi::linear_indexing_tag;
@@ -130,11 +135,11 @@ std::vector<std::size_t> rips(Tree& tree, const char* file, double radius, int m
   Clock of_expansion;
   tree.expansion(max_dim);
   double expansion = of_expansion.seconds();
-  std::size_t memory = resident(), simplices = tree.num_simplices();
+  std::size_t memory = resident(), heap = allocated(), simplices = tree.num_simplices();
   std::printf("BUILD |K|=%zu ", simplices);
   auto counts = print_counts(tree);
-  std::printf("BUILD graph_s=%.3f insert_graph_s=%.3f expansion_s=%.3f rss_B/simplex=%.2f\n", graph, insertion,
-              expansion, double(memory) / double(simplices));
+  std::printf("BUILD graph_s=%.3f insert_graph_s=%.3f expansion_s=%.3f rss_B/simplex=%.2f heap_B/simplex=%.2f\n",
+              graph, insertion, expansion, double(memory) / double(simplices), double(heap) / double(simplices));
   return counts;
 }
 
@@ -276,7 +281,8 @@ void print_witness(Complex& complex, double relaxation, std::size_t max_dim) {
   Default tree;
   Clock clock;
   complex.create_complex(tree, relaxation, max_dim);
-  std::printf("weak s=%.3f ", clock.seconds());
+  double seconds = clock.seconds();
+  std::printf("weak |K|=%zu s=%.3f ", tree.num_simplices(), seconds);
   print_counts(tree);
 }
 
