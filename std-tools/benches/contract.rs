@@ -10,24 +10,24 @@
 //! medians are printed with least and most. Read the ratios.
 
 use std::error::Error;
-use std::time::Instant;
 
+use common::{Timing, grid, on_one_thread, timed};
 use sig_core::VertexId;
 use sig_tools::build::{Arrays, BuildOptions, Built, build};
 use sig_tools::contract::{Edge, contract};
-use sig_tools::soup::{Labels, Soup};
+
+mod common;
 
 const ROUNDS: usize = 9;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<u32> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
+    let arguments: Vec<u32> = common::arguments().iter().map(|side| side.parse()).collect::<Result<_, _>>()?;
     let sides = if arguments.is_empty() { vec![17, 36, 77] } else { arguments };
     println!("medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     for side in sides {
         println!("\n{side}");
         measure(side, "all threads")?;
-        one.install(|| measure(side, "one thread").map_err(|error| error.to_string()))?;
+        on_one_thread(|| measure(side, "one thread").map_err(|error| error.to_string()))??;
     }
     Ok(())
 }
@@ -66,41 +66,33 @@ fn measure(side: u32, threads: &str) -> Result<(), Box<dyn Error>> {
             return Err("the edges do not share a pass".into());
         }
     }
-    let [build, one, list, copy] = [builds, ones, lists, copies].map(median);
-    let local = (list.0 - one.0) / (many.len() as f64 - 1.0);
+    let [build, one, list, copy] = [builds, ones, lists, copies].map(Timing::of);
+    let local = (list.median - one.median) / (many.len() as f64 - 1.0);
     println!("  {threads}, {count} simplices");
-    println!("    build again        {}", show(build));
-    println!("    copy all arrays    {}", show(copy));
-    println!("    contract one       {}, a rebuild takes {:.1} times as long", show(one), build.0 / one.0);
-    println!("    contract {:<9} {}, {} an edge", many.len(), show(list), show_one(list.0 / many.len() as f64));
-    println!("    local part         {}", show_one(local));
+    println!("    build again        {}", build.show(1e6, "µs"));
+    println!("    copy all arrays    {}", copy.show(1e6, "µs"));
+    println!(
+        "    contract one       {}, a rebuild takes {:.1} times as long",
+        one.show(1e6, "µs"),
+        build.median / one.median
+    );
+    println!(
+        "    contract {:<9} {}, {} an edge",
+        many.len(),
+        list.show(1e6, "µs"),
+        show(list.median / many.len() as f64)
+    );
+    println!("    local part         {}", show(local));
     println!(
         "    pass               {}, {:.2} ns a simplex",
-        show_one(one.0 - local),
-        (one.0 - local) * 1e9 / count as f64
+        show(one.median - local),
+        (one.median - local) * 1e9 / count as f64
     );
     Ok(())
 }
 
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = work();
-    (start.elapsed().as_secs_f64(), result)
-}
-
-/// Median, least and most.
-fn median(mut samples: Vec<f64>) -> (f64, f64, f64) {
-    samples.sort_by(f64::total_cmp);
-    let at = |index: usize| samples.get(index).copied().unwrap_or(f64::NAN);
-    (at(samples.len() / 2), at(0), at(samples.len().saturating_sub(1)))
-}
-
-fn show_one(seconds: f64) -> String {
-    format!("{:.3} ms", seconds * 1e3)
-}
-
-fn show((median, least, most): (f64, f64, f64)) -> String {
-    format!("{:.3} ms ({:.3}, {:.3})", median * 1e3, least * 1e3, most * 1e3)
+fn show(seconds: f64) -> String {
+    format!("{:.1} µs", seconds * 1e6)
 }
 
 fn num_simplices(built: &Built) -> usize {
@@ -108,17 +100,4 @@ fn num_simplices(built: &Built) -> usize {
         Arrays::Narrow(arrays) => arrays.num_simplices,
         Arrays::Wide(arrays) => arrays.num_simplices,
     }
-}
-
-/// The Freudenthal triangulation of a grid of side³ vertices: six tetrahedra a cube, one for each order of the axes.
-fn grid(side: u32) -> Soup {
-    let mut soup = Soup::new(Labels::Numbered((side * side * side) as usize), true);
-    let steps = [1, side, side * side];
-    for corner in (0..side * side * side).filter(|v| steps.iter().all(|step| v / step % side < side - 1)) {
-        for [a, b, c] in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
-            let (one, two) = (corner + steps[a], corner + steps[a] + steps[b]);
-            soup.push(&[corner, one, two, two + steps[c]]);
-        }
-    }
-    soup
 }

@@ -12,11 +12,11 @@
 #![allow(clippy::cast_possible_truncation, reason = "inputs are small")]
 
 use std::error::Error;
+use std::ffi::OsStr;
 use std::hint::black_box;
 use std::path::Path;
-use std::process::Command;
-use std::time::Instant;
 
+use common::{figure, run, timed, write_points};
 use rayon::prelude::*;
 use sig_tools::build::{BuildOptions, complete};
 use sig_tools::flag::{FlagOptions, expand};
@@ -26,10 +26,12 @@ use sig_tools::graph::Graph;
 use sig_tools::points::{Metric, Points};
 use sig_tools::store::{EncodeOptions, Encoding};
 
+mod common;
+
 const ROUNDS: usize = 3;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments = common::arguments();
     let runs = match arguments.as_slice() {
         [count, radius, max_dim] => vec![(count.parse()?, radius.parse()?, max_dim.parse()?)],
         // The radius goes with the fourth root of the density, so that the mean degree is the same.
@@ -43,7 +45,7 @@ fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Erro
     let points = sphere4(count, 1);
     let graph = radius_graph(&points, radius)?;
     let file = tempfile::NamedTempFile::new()?;
-    write_points(file.path(), &points)?;
+    write_points(&points, file.path())?;
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let options = FlagOptions { max_dim, ..FlagOptions::default() };
     let (mut all, mut single, mut floor, mut whole, mut peer) = (vec![], vec![], vec![], vec![], vec![]);
@@ -63,8 +65,8 @@ fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Erro
         let (seconds, built) = timed(|| complete(tree, &BuildOptions::default()));
         black_box(built?);
         whole.push(all[all.len() - 1] + seconds);
-        if let Some(program) = std::env::var_os("GUDHI_BENCH") {
-            peer.push(run_peer(program.as_ref(), file.path(), radius, max_dim, &counts)?);
+        if let Some(program) = common::peer() {
+            peer.push(run_peer(&program, file.path(), radius, max_dim, &counts)?);
         }
     }
     let simplices = counts.iter().sum::<usize>() as f64;
@@ -80,12 +82,6 @@ fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Erro
         println!("  whole SIG / GUDHI       {:.2}", whole / peer);
     }
     Ok(())
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = work();
-    (start.elapsed().as_secs_f64(), result)
 }
 
 fn median(mut samples: Vec<f64>) -> f64 {
@@ -122,24 +118,20 @@ fn radius_graph(points: &Points, radius: f64) -> Result<Graph, Box<dyn Error>> {
     Ok(Graph::from_upper_lists(&lists, None)?)
 }
 
-fn write_points(path: &Path, points: &Points) -> Result<(), Box<dyn Error>> {
-    let mut bytes = b"PTS1".to_vec();
-    bytes.extend(u32::try_from(points.dim())?.to_le_bytes());
-    bytes.extend((points.len() as u64).to_le_bytes());
-    bytes.extend(points.values().iter().flat_map(|value| value.to_le_bytes()));
-    Ok(std::fs::write(path, bytes)?)
-}
-
 /// Seconds that the peer takes to insert the same edges and expand them; its counts must be the same.
-fn run_peer(program: &Path, file: &Path, radius: f64, max_dim: usize, counts: &[usize]) -> Result<f64, Box<dyn Error>> {
+fn run_peer(
+    program: &OsStr,
+    file: &Path,
+    radius: f64,
+    max_dim: usize,
+    counts: &[usize],
+) -> Result<f64, Box<dyn Error>> {
     let arguments = [radius.to_string(), max_dim.to_string()];
-    let output = Command::new(program).args(["rips", "min"]).arg(file).args(arguments).output()?;
-    let text = String::from_utf8(output.stdout)?;
-    let dims = text.split("dims=").nth(1).and_then(|rest| rest.lines().next()).ok_or("no counts of the peer")?;
-    let theirs: Result<Vec<usize>, _> = dims.split_whitespace().map(str::parse).collect();
-    if theirs? != counts {
-        return Err(format!("the peer counts {dims}").into());
+    let [radius, max_dim] = &arguments;
+    let text = run(program, &["rips".as_ref(), "min".as_ref(), file.as_os_str(), radius.as_ref(), max_dim.as_ref()])?;
+    let theirs = common::counts(&text)?;
+    if theirs != counts {
+        return Err(format!("the peer counts {theirs:?}").into());
     }
-    let seconds = text.split("expansion_s=").nth(1).and_then(|rest| rest.split(' ').next());
-    Ok(seconds.ok_or("no figure of the peer")?.parse()?)
+    figure(&text, "expansion_s=")
 }

@@ -10,13 +10,13 @@
 //! their spread. Read the ratios.
 
 use std::error::Error;
-use std::path::Path;
-use std::process::Command;
-use std::time::Instant;
 
+use common::{Timing, figure, on_one_thread, run, timed};
 use sig_tools::generate::{cube, klein_bottle_grid, sphere4, veronese};
 use sig_tools::points::{Metric, Points};
 use sig_tools::proximity::{RadiusOptions, radius_graph};
+
+mod common;
 
 const ROUNDS: usize = 5;
 
@@ -32,7 +32,7 @@ const CLOUDS: [Cloud; 4] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments = common::arguments();
     println!("medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
     match arguments.as_slice() {
         [] => CLOUDS.iter().try_for_each(|(name, points, radius)| measure(name, &points(), *radius)),
@@ -45,58 +45,36 @@ fn read(file: &str) -> Result<Points, Box<dyn Error>> {
     Ok(sig_tools::io::space::read_points_path(file, &sig_tools::io::space::SpaceOptions::default())?.0)
 }
 
-/// Median, least and most of some timings, in seconds.
-fn show(samples: &mut [f64]) -> String {
-    samples.sort_by(f64::total_cmp);
-    let milliseconds = |index: usize| samples[index] * 1e3;
-    format!("{:.1} ms ({:.1}, {:.1})", milliseconds(ROUNDS / 2), milliseconds(0), milliseconds(ROUNDS - 1))
-}
-
 /// One graph on all threads and on one, and the peer's in turn.
 fn measure(name: &str, points: &Points, radius: f64) -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("points.pts");
-    std::fs::write(&file, pts(points))?;
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let peer = std::env::var_os("GUDHI_BENCH");
+    common::write_points(points, &file)?;
+    let peer = common::peer();
     let (mut all, mut single, mut peers) = (Vec::new(), Vec::new(), Vec::new());
     let mut edges = 0;
-    let mut graph = || -> Result<f64, Box<dyn Error>> {
-        let start = Instant::now();
-        edges = radius_graph(points, Metric::Euclidean, radius, &RadiusOptions::default())?.num_edges();
-        Ok(start.elapsed().as_secs_f64())
-    };
+    let graph = || timed(|| radius_graph(points, Metric::Euclidean, radius, &RadiusOptions::default()));
+    let text = radius.to_string();
+    let arguments = ["rips".as_ref(), "min".as_ref(), file.as_os_str(), text.as_ref(), "1".as_ref()];
     for _ in 0..ROUNDS {
-        all.push(graph()?);
-        single.push(one.install(|| graph().map_err(|error| error.to_string()))?);
+        let (seconds, found) = graph();
+        edges = found?.num_edges();
+        all.push(seconds);
+        single.push(on_one_thread(|| graph().0)?);
         if let Some(peer) = &peer {
-            peers.push(peer_seconds(Path::new(peer), &file, radius)?);
+            // The time that the peer says it took for its graph.
+            peers.push(figure(&run(peer, &arguments)?, "graph_s=")?);
         }
     }
     println!("\n{name}, radius {radius}: {edges} edges");
-    println!("  all threads  {}", show(&mut all));
-    println!("  one thread   {}", show(&mut single));
+    let (all, single) = (Timing::of(all), Timing::of(single));
+    println!("  all threads  {}", all.show(1e3, "ms"));
+    println!("  one thread   {}", single.show(1e3, "ms"));
     if !peers.is_empty() {
-        println!("  GUDHI        {}", show(&mut peers));
-        let ratio = |own: &[f64]| peers[ROUNDS / 2] / own[ROUNDS / 2];
+        let peers = Timing::of(peers);
+        println!("  GUDHI        {}", peers.show(1e3, "ms"));
+        let ratio = |own: &Timing| peers.median / own.median;
         println!("  times faster {:.1} on all threads, {:.1} on one", ratio(&all), ratio(&single));
     }
     Ok(())
-}
-
-/// The points as a file for the peer.
-fn pts(points: &Points) -> Vec<u8> {
-    let mut bytes = b"PTS1".to_vec();
-    bytes.extend(u32::try_from(points.dim()).unwrap_or(u32::MAX).to_le_bytes());
-    bytes.extend((points.len() as u64).to_le_bytes());
-    bytes.extend(points.values().iter().flat_map(|value| value.to_le_bytes()));
-    bytes
-}
-
-/// The time that the peer says it took for its graph.
-fn peer_seconds(peer: &Path, file: &Path, radius: f64) -> Result<f64, Box<dyn Error>> {
-    let output = Command::new(peer).args(["rips", "min"]).arg(file).args([&radius.to_string(), "1"]).output()?;
-    let text = String::from_utf8(output.stdout)?;
-    let seconds = text.split_once("graph_s=").and_then(|(_, rest)| rest.split_whitespace().next());
-    Ok(seconds.ok_or("the peer did not say how long it took")?.parse()?)
 }

@@ -15,11 +15,11 @@ use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
 
-use common::{Timing, peak_memory, timed};
+use common::{Timing, figure, grid, peak_memory, run, timed};
 use sig_core::format::{Column, SectionKind};
 use sig_core::{Complex, with_complex};
 use sig_tools::build::{BuildOptions, Built, build};
-use sig_tools::soup::{Labels, Soup};
+use sig_tools::soup::Soup;
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Mapped, OwnedScratch};
 
@@ -56,30 +56,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("  {megabytes:9.2} MB  {}", Timing::of(samples?).show(1e6, "µs"));
     }
     Ok(())
-}
-
-/// The Freudenthal triangulation of a grid of side³ vertices: six tetrahedra a cube, one for each order of the axes.
-fn grid(side: u32) -> Soup {
-    let number = |[x, y, z]: [u32; 3]| x + side * (y + side * z);
-    let mut soup = Soup::new(Labels::Numbered((side * side * side) as usize), true);
-    let cells = 0..side - 1;
-    let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
-    for z in cells.clone() {
-        for y in cells.clone() {
-            for x in cells.clone() {
-                for order in orders {
-                    let mut corner = [x, y, z];
-                    let mut word = [number(corner); 4];
-                    for (vertex, axis) in word[1..].iter_mut().zip(order) {
-                        corner[axis] += 1;
-                        *vertex = number(corner);
-                    }
-                    soup.push(&word);
-                }
-            }
-        }
-    }
-    soup
 }
 
 /// The grid of so many vertices a side, or the mesh in a file.
@@ -139,11 +115,8 @@ fn num_simplices(built: &Built) -> f64 {
 
 /// Seconds a simplex that the peer takes to insert the same tetrahedra.
 fn run_peer(program: &Path, tetrahedra: &Path) -> Result<f64, Box<dyn Error>> {
-    let output = Command::new(program).arg("lean").arg(tetrahedra).output()?;
-    let text = String::from_utf8(output.stdout)?;
-    let nanoseconds =
-        text.split("s, ").nth(1).and_then(|rest| rest.split(" ns").next()).ok_or("no figure of the peer")?;
-    Ok(nanoseconds.parse::<f64>()? * 1e-9)
+    let text = run(program.as_os_str(), &["lean".as_ref(), tetrahedra.as_os_str()])?;
+    Ok(figure(&text, "s, ")? * 1e-9)
 }
 
 /// Writes the file and says what its bytes are.

@@ -11,21 +11,24 @@
 //! measured in turn, several rounds, and the medians are printed with their spread. Read the ratios.
 
 use std::error::Error;
+use std::ffi::{OsStr, OsString};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
+use common::{Timing, timed};
 use rayon::prelude::*;
 use sig_tools::generate::{SplitMix64, sphere4};
 use sig_tools::graph::Graph;
 use sig_tools::points::{Metric, Points};
 use sig_tools::simplex_tree::{LinkCondition, Simplex, SimplexTree};
 
+mod common;
+
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
 fn main() -> Outcome<()> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments = common::arguments();
     if arguments.first().is_some_and(|mode| mode == "--memory") {
         return memory();
     }
@@ -36,7 +39,8 @@ fn main() -> Outcome<()> {
     if wants("memory") {
         let output = Command::new(std::env::current_exe()?).arg("--memory").output()?;
         print!("{}", String::from_utf8(output.stdout)?);
-        peer.figure(&["rips", "def"], &["0.21", "7"], &["rss_B/simplex="])?.print("GUDHI, bytes a simplex", 1.0);
+        let figures = peer.figure(&["rips", "def"], &["0.21", "7"], &["rss_B/simplex="])?;
+        print_figures("GUDHI, bytes a simplex", &figures, 1.0);
     }
     if wants("incr") {
         incremental(&points, &peer)?;
@@ -52,58 +56,47 @@ fn main() -> Outcome<()> {
 
 /// The binary to compare with, if the environment names one, and the points in its format.
 struct Peer {
-    program: Option<PathBuf>,
+    program: Option<OsString>,
     points: PathBuf,
-}
-
-/// Median, least and most of some figures.
-struct Figures(Vec<f64>);
-
-impl Figures {
-    fn median(&self) -> f64 {
-        let mut sorted = self.0.clone();
-        sorted.sort_by(f64::total_cmp);
-        sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
-    }
-
-    fn print(&self, what: &str, factor: f64) {
-        if !self.0.is_empty() {
-            let (least, most) = self.0.iter().fold((f64::MAX, f64::MIN), |(l, m), &x| (x.min(l), x.max(m)));
-            println!("  {what:44} {:9.3} ({:.3}, {:.3})", self.median() * factor, least * factor, most * factor);
-        }
-    }
 }
 
 impl Peer {
     fn new(points: &Points, folder: &Path) -> Outcome<Self> {
         let path = folder.join("s4.pts");
-        let mut bytes = b"PTS1".to_vec();
-        bytes.extend(u32::try_from(points.dim())?.to_le_bytes());
-        bytes.extend((points.len() as u64).to_le_bytes());
-        bytes.extend(points.values().iter().flat_map(|value| value.to_le_bytes()));
-        std::fs::write(&path, bytes)?;
-        Ok(Self { program: std::env::var_os("GUDHI_BENCH").map(PathBuf::from), points: path })
+        common::write_points(points, &path)?;
+        Ok(Self { program: common::peer(), points: path })
     }
 
     /// The figures that follow the keys in what the peer says; none if there is no peer.
-    fn figure(&self, mode: &[&str], arguments: &[&str], keys: &[&str]) -> Outcome<Figures> {
-        let Some(program) = &self.program else { return Ok(Figures(Vec::new())) };
-        let output = Command::new(program).args(mode).arg(&self.points).args(arguments).output()?;
-        let text = String::from_utf8(output.stdout)?;
+    fn figure(&self, mode: &[&str], arguments: &[&str], keys: &[&str]) -> Outcome<Vec<f64>> {
+        let Some(program) = &self.program else { return Ok(Vec::new()) };
+        let words =
+            mode.iter().map(OsStr::new).chain([self.points.as_os_str()]).chain(arguments.iter().map(OsStr::new));
+        let text = common::run(program, &words.collect::<Vec<_>>())?;
         let after = |key: &&str| {
             let (head, last) = key.rsplit_once('|').unwrap_or(("", key));
             let line = text.lines().find(|line| line.contains(head) && line.contains(last))?;
-            line.split(last).nth(1)?.split_whitespace().next()?.parse().ok()
+            common::figure(line, last).ok()
         };
         let figures: Option<Vec<f64>> = keys.iter().map(after).collect();
-        Ok(Figures(figures.ok_or_else(|| format!("no figure of the peer in: {text}"))?))
+        Ok(figures.ok_or_else(|| format!("no figure of the peer in: {text}"))?)
     }
 }
 
-fn seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = work();
-    (start.elapsed().as_secs_f64(), result)
+fn print_figures(what: &str, figures: &[f64], factor: f64) {
+    if !figures.is_empty() {
+        let Timing { median, least, most } = Timing::of(figures.to_vec());
+        println!("  {what:44} {:9.3} ({:.3}, {:.3})", median * factor, least * factor, most * factor);
+    }
+}
+
+/// Prints seconds as microseconds, and how many times as long the peer takes.
+fn compare(what: &str, own: Vec<f64>, theirs: Vec<f64>) {
+    print_figures(what, &own, 1e6);
+    print_figures("  GUDHI", &theirs, 1e6);
+    if !theirs.is_empty() {
+        println!("    GUDHI / SIG {:.2}", Timing::of(theirs).median / Timing::of(own).median);
+    }
 }
 
 /// The graph of the pairs at distance up to `radius`, of the first `count` points.
@@ -135,7 +128,7 @@ fn memory() -> Outcome<()> {
     let points = sphere4(50_000, 1);
     let graph = graph(&points, points.len(), 0.21)?;
     let before = resident()?;
-    let (time, tree) = seconds(|| -> Outcome<SimplexTree> {
+    let (time, tree) = timed(|| -> Outcome<SimplexTree> {
         let mut tree = SimplexTree::from_graph(&graph)?;
         tree.expand(7)?;
         Ok(tree)
@@ -180,33 +173,28 @@ fn incremental(points: &Points, peer: &Peer) -> Outcome<()> {
     let mut own: [Vec<f64>; 3] = Default::default();
     let mut theirs: [Vec<f64>; 3] = Default::default();
     for _ in 0..ROUNDS {
-        let (time, inserted) = seconds(|| insert_all(&all, SimplexTree::insert_with_prefixes));
+        let (time, inserted) = timed(|| insert_all(&all, SimplexTree::insert_with_prefixes));
         assert_eq!(inserted?.num_simplices(), tree.num_simplices());
         own[0].push(time / all.len() as f64);
         let some = &tops[..tops.len().min(500_000)];
-        let (time, inserted) = seconds(|| insert_all(some, SimplexTree::insert_with_faces));
+        let (time, inserted) = timed(|| insert_all(some, SimplexTree::insert_with_faces));
         black_box(inserted?);
         own[1].push(time / some.len() as f64);
         let mut smaller = tree.clone();
         let some = &tops[..tops.len().min(200_000)];
-        let (time, removed) =
-            seconds(|| some.iter().try_fold(0, |sum, word| smaller.remove(word).map(|one| sum + one)));
+        let (time, removed) = timed(|| some.iter().try_fold(0, |sum, word| smaller.remove(word).map(|one| sum + one)));
         assert_eq!(removed?, some.len());
         own[2].push(time / some.len() as f64);
         let keys = ["insert_simplex random|us=", "insert_simplex_and_subfaces|us="];
         let figures = peer.figure(&["incr", "def"], &["0.21", "5", "insert"], &keys)?;
         let removal = peer.figure(&["incr", "def"], &["0.21", "5", "remove"], &["remove_maximal_simplex|us="])?;
-        for (figure, theirs) in figures.0.iter().chain(&removal.0).zip(&mut theirs) {
+        for (figure, theirs) in figures.iter().chain(&removal).zip(&mut theirs) {
             theirs.push(figure * 1e-6);
         }
     }
     let work = ["insertion in random order", "insertion with faces, dimension 5", "removal of a maximal simplex"];
-    for ((work, own), theirs) in work.into_iter().zip(own.map(Figures)).zip(theirs.map(Figures)) {
-        own.print(work, 1e6);
-        theirs.print("  GUDHI", 1e6);
-        if !theirs.0.is_empty() {
-            println!("    GUDHI / SIG {:.2}", theirs.median() / own.median());
-        }
+    for ((work, own), theirs) in work.into_iter().zip(own).zip(theirs) {
+        compare(work, own, theirs);
     }
     Ok(())
 }
@@ -226,7 +214,7 @@ fn insert_all<T>(
 fn cofaces(points: &Points) -> Outcome<()> {
     let tree = rips(points, 0.21, 7)?;
     let mut listed = tree.clone();
-    let (time, kept) = seconds(|| listed.keep_label_lists());
+    let (time, kept) = timed(|| listed.keep_label_lists());
     kept?;
     println!("s4 r 0.21 k 7, the star of a simplex, microseconds; making the lists took {time:.2} s");
     for dim in 0..=7 {
@@ -234,7 +222,7 @@ fn cofaces(points: &Points) -> Outcome<()> {
         shuffle(&mut words);
         let each = |tree: &SimplexTree, count: usize| {
             let some = &words[..count.min(words.len())];
-            let (time, found) = seconds(|| some.iter().map(|word| tree.star(word).count()).sum::<usize>());
+            let (time, found) = timed(|| some.iter().map(|word| tree.star(word).count()).sum::<usize>());
             (time / some.len() as f64 * 1e6, found as f64 / some.len() as f64)
         };
         let ((with, found), (without, _)) = (each(&listed, 20_000), each(&tree, 100));
@@ -260,21 +248,16 @@ fn contraction(peer: &Peer) -> Outcome<()> {
             let mut tree = SimplexTree::from_graph(&graph)?;
             tree.expand(sig_core::MAX_DIM)?;
             let before = tree.num_simplices();
-            let (time, contracted) = seconds(|| tree.contract_all(1, LinkCondition::Required));
+            let (time, contracted) = timed(|| tree.contract_all(1, LinkCondition::Required));
             let done = contracted?.len();
             own.push(time / done as f64);
             summary =
                 format!("{} edges, {before} simplices, {done} contracted, left {:?}", graph.num_edges(), tree.counts());
             let (radius, count) = (radius.to_string(), count.to_string());
-            theirs.extend(peer.figure(&["contract"], &[&radius, &count], &["us/contraction="])?.0);
+            theirs.extend(peer.figure(&["contract"], &[&radius, &count], &["us/contraction="])?);
         }
         println!(" {count} points, r {radius:.3}: {summary}");
-        let (own, theirs) = (Figures(own), Figures(theirs.into_iter().map(|figure| figure * 1e-6).collect()));
-        own.print("SIG", 1e6);
-        theirs.print("GUDHI", 1e6);
-        if !theirs.0.is_empty() {
-            println!("    GUDHI / SIG {:.2}", theirs.median() / own.median());
-        }
+        compare("SIG", own, theirs.into_iter().map(|figure| figure * 1e-6).collect());
     }
     Ok(())
 }

@@ -13,16 +13,17 @@
 //! spread. Read the ratios.
 
 use std::error::Error;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Command;
-use std::time::Instant;
 
+use common::{Timing, figure, on_one_thread, run, timed, write_points};
 use sig_tools::generate::{cube, sphere4, veronese};
+use sig_tools::io::space::{SpaceOptions, read_points_path};
 use sig_tools::points::Points;
 use sig_tools::witness::insertion::GrowingWitnessComplex;
 use sig_tools::witness::{Landmarks, Relaxation, WitnessOptions, witness_complex};
+
+mod common;
 
 const ROUNDS: usize = 3;
 
@@ -74,7 +75,7 @@ const CASES: [Case; 4] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments = common::arguments();
     println!("medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
     if let [path, step, relaxation, max_dim] = arguments.as_slice()
         && let Ok(step) = step.parse()
@@ -91,33 +92,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Median, least and most of some timings, in seconds.
-struct Timing {
-    median: f64,
-    least: f64,
-    most: f64,
-}
-
-impl Timing {
-    fn of(mut samples: Vec<f64>) -> Self {
-        samples.sort_by(f64::total_cmp);
-        let at = |index: usize| samples.get(index).copied().unwrap_or(f64::NAN);
-        Self { median: at(samples.len() / 2), least: at(0), most: at(samples.len().saturating_sub(1)) }
-    }
-}
-
-impl std::fmt::Display for Timing {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.3} s ({:.3}, {:.3})", self.median, self.least, self.most)
-    }
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = work();
-    (start.elapsed().as_secs_f64(), result)
-}
-
 /// Builds on all threads and on one, with and without filtration, and lets the peer do the same in turn.
 fn compare(case: &Case) -> Result<(), Box<dyn Error>> {
     let points = (case.points)();
@@ -125,11 +99,10 @@ fn compare(case: &Case) -> Result<(), Box<dyn Error>> {
     let relaxation = Relaxation::Squared(case.relaxation);
     let options = WitnessOptions { relaxation, max_dim: case.max_dim, ..WitnessOptions::default() };
     let with_filtration = WitnessOptions { filtration: true, ..options };
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("points.pts");
     write_points(&points, &file)?;
-    let peer = std::env::var_os("GUDHI_BENCH");
+    let peer = common::peer();
     let (mut all, mut single, mut filtered) = (Vec::new(), Vec::new(), Vec::new());
     let (mut from_points, mut from_table) = (Vec::new(), Vec::new());
     println!("\n{}: {} landmarks of {} points in R^{}", case.name, case.landmarks, points.len(), points.dim());
@@ -137,67 +110,50 @@ fn compare(case: &Case) -> Result<(), Box<dyn Error>> {
         let (seconds, complex) = timed(|| witness_complex(&points, &landmarks, &options));
         let counts = complex?.tree.counts();
         all.push(seconds);
-        single.push(timed(|| one.install(|| witness_complex(&points, &landmarks, &options))).0);
+        single.push(on_one_thread(|| timed(|| witness_complex(&points, &landmarks, &options)).0)?);
         filtered.push(timed(|| witness_complex(&points, &landmarks, &with_filtration)).0);
         if round == 0 {
             println!("  {} simplices: {counts:?}", counts.iter().sum::<usize>());
         }
         if let Some(program) = &peer {
             for (mode, samples) in [("e", &mut from_points), ("t", &mut from_table)] {
-                let (seconds, peers) = run_peer(program.as_ref(), &file, case, mode)?;
+                let (seconds, peers) = run_peer(program, &file, case, mode)?;
                 samples.push(seconds);
                 assert_eq!(counts, peers, "the peer has other simplices");
             }
         }
     }
     let (all, single, filtered) = (Timing::of(all), Timing::of(single), Timing::of(filtered));
-    println!("    all threads          {all}\n    one thread           {single}\n    with filtration      {filtered}");
+    let show = |what: &str, timing: &Timing| println!("    {what:20} {}", timing.show(1e3, "ms"));
+    show("all threads", &all);
+    show("one thread", &single);
+    show("with filtration", &filtered);
     if peer.is_some() {
         let (points, table) = (Timing::of(from_points), Timing::of(from_table));
         let better = points.median.min(table.median);
-        println!("    GUDHI from points    {points}\n    GUDHI from a table   {table}");
+        show("GUDHI from points", &points);
+        show("GUDHI from a table", &table);
         println!("    better GUDHI / SIG   {:.1} all threads, {:.1} one", better / all.median, better / single.median);
     }
     Ok(())
 }
 
-/// A cloud behind `PTS1`.
-fn write_points(points: &Points, path: &Path) -> Result<(), Box<dyn Error>> {
-    let mut out = BufWriter::new(File::create(path)?);
-    out.write_all(b"PTS1")?;
-    out.write_all(&u32::try_from(points.dim())?.to_le_bytes())?;
-    out.write_all(&(points.len() as u64).to_le_bytes())?;
-    for value in points.values() {
-        out.write_all(&value.to_le_bytes())?;
-    }
-    Ok(out.flush()?)
-}
-
-fn read_points(path: &Path) -> Result<Points, Box<dyn Error>> {
-    let bytes = std::fs::read(path)?;
-    let (header, values) = bytes.split_at_checked(16).ok_or("too short for points")?;
-    let dim = u32::from_le_bytes(header[4..8].try_into()?);
-    let values = values.chunks_exact(8).map(|bytes| bytes.try_into().map(f64::from_le_bytes));
-    Ok(Points::new(usize::try_from(dim)?, values.collect::<Result<_, _>>()?)?)
-}
-
 /// Seconds that the peer takes for neighbours and complex, and its simplices by dimension.
-fn run_peer(program: &Path, file: &Path, case: &Case, mode: &str) -> Result<(f64, Vec<usize>), Box<dyn Error>> {
+fn run_peer(program: &OsStr, file: &Path, case: &Case, mode: &str) -> Result<(f64, Vec<usize>), Box<dyn Error>> {
     let numbers = [case.landmarks.to_string(), case.relaxation.to_string(), case.max_dim.to_string()];
     let neighbours = case.neighbours.to_string();
-    let output = Command::new(program).arg("wit").arg(file).args(numbers).args([mode, &neighbours]).output()?;
-    let text = String::from_utf8(output.stdout)?;
+    let [landmarks, relaxation, max_dim] = numbers.each_ref().map(OsStr::new);
+    let arguments =
+        ["wit".as_ref(), file.as_os_str(), landmarks, relaxation, max_dim, mode.as_ref(), neighbours.as_ref()];
+    let text = run(program, &arguments)?;
     let line = text.lines().find(|line| line.contains("weak")).ok_or("no figure of the peer")?;
-    let after = |key: &str| line.split(key).nth(1).and_then(|rest| rest.split(' ').next());
-    let neighbours = after("ctor_s=").or(after("brute_nn_s=")).ok_or("no time for neighbours")?;
-    let complex = after(" s=").ok_or("no time for the complex")?;
-    let counts = line.split("dims=").nth(1).ok_or("no counts")?.split_whitespace().map(str::parse);
-    Ok((neighbours.parse::<f64>()? + complex.parse::<f64>()?, counts.collect::<Result<_, _>>()?))
+    let neighbours = figure(line, "ctor_s=").or_else(|_| figure(line, "brute_nn_s="))?;
+    Ok((neighbours + figure(line, " s=")?, common::counts(line)?))
 }
 
 /// A cloud in a file, of which every so many-th point is a landmark, with ρ on distances.
 fn own_points(path: &Path, step: usize, relaxation: f64, max_dim: usize) -> Result<(), Box<dyn Error>> {
-    let points = read_points(path)?;
+    let points = read_points_path(path, &SpaceOptions::default())?.0;
     let landmarks = Landmarks::chosen(&points, &(0..points.len()).step_by(step.max(1)).collect::<Vec<_>>())?;
     let options = WitnessOptions { relaxation: Relaxation::Distance(relaxation), max_dim, ..WitnessOptions::default() };
     let mut samples = Vec::new();
@@ -207,7 +163,7 @@ fn own_points(path: &Path, step: usize, relaxation: f64, max_dim: usize) -> Resu
         let counts = complex?.tree.counts();
         println!("  {} simplices: {counts:?}", counts.iter().sum::<usize>());
     }
-    println!("    all threads          {}", Timing::of(samples));
+    println!("    all threads          {}", Timing::of(samples).show(1e3, "ms"));
     Ok(())
 }
 

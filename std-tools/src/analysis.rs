@@ -1,6 +1,6 @@
 //! What can be said of a complex as a whole: its top simplices, connectedness, regularity (sig-2004, 2).
 
-use sig_core::{Complex, Index};
+use sig_core::{Complex, Dim, Index, Relations};
 
 /// Facts about a complex as a whole.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -17,6 +17,26 @@ pub struct Analysis {
     /// a combinatorial pseudo-manifold, perhaps with boundary. For d = 0 that is one vertex or two, the (−1)-simplex
     /// being a face of both; the empty complex is none.
     pub is_pseudo_manifold: bool,
+}
+
+/// The number of top simplices of each dimension of a complex in a file of either kind.
+///
+/// Cost: the facets of every simplex, for which a tree searches; a byte for each simplex of one dimension of memory.
+#[must_use]
+pub fn num_top_simplices(complex: &impl Relations) -> Vec<usize> {
+    let dims = complex.dim().map_or(0, |dim| dim + 1);
+    let tops = |dim: Dim| {
+        let simplices = complex.simplices_of_dim(dim);
+        let first = simplices.bounds().0.index();
+        let mut is_facet = vec![false; simplices.len()];
+        for facet in complex.simplices_of_dim(dim + 1).flat_map(|coface| complex.facets(coface)) {
+            if let Some(is_facet) = facet.index().checked_sub(first).and_then(|at| is_facet.get_mut(at)) {
+                *is_facet = true;
+            }
+        }
+        is_facet.into_iter().filter(|is_facet| !is_facet).count()
+    };
+    (0..dims).map(tops).collect()
 }
 
 impl Analysis {
@@ -124,7 +144,7 @@ mod tests {
     use proptest::prelude::*;
     use sig_core::Complex;
 
-    use super::Analysis;
+    use super::{Analysis, num_top_simplices};
     use crate::build::{BuildOptions, build};
     use crate::soup::{Labels, Soup};
     use crate::store::{EncodeOptions, Encoding};
@@ -134,7 +154,10 @@ mod tests {
         simplices.iter().for_each(|simplex| soup.push(simplex));
         let built = build(soup, &BuildOptions::default()).unwrap();
         let file = Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap();
-        Analysis::new(&Complex::<u16>::from_bytes(&file).unwrap())
+        let complex = Complex::<u16>::from_bytes(&file).unwrap();
+        let analysis = Analysis::new(&complex);
+        assert_eq!(num_top_simplices(&complex), analysis.top_simplices);
+        analysis
     }
 
     fn digits(simplices: &str) -> Analysis {

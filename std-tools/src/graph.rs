@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use sig_core::{Relations, SimplexId, VertexId};
 
 /// A simple graph on the vertices `0..num_vertices`; each edge is kept once, with its lower vertex.
 ///
@@ -102,6 +103,28 @@ impl Graph {
         Ok(Self { offsets, upper, weights, vertex_weights: None })
     }
 
+    /// The 1-skeleton of a complex in a file of either kind, with the filtration values as weights if it has them.
+    ///
+    /// Time: linear in vertices and edges, whatever else there is.
+    ///
+    /// # Errors
+    /// [`GraphError`]: more vertices than 32-bit numbers tell apart, or a damaged file.
+    pub fn of(complex: &impl Relations) -> Result<Self, GraphError> {
+        let number = |vertex: VertexId| u32::try_from(vertex.index()).unwrap_or(u32::MAX);
+        let ends = |edge: SimplexId| {
+            let mut vertices = complex.vertices(edge).map(number);
+            (vertices.next().unwrap_or(u32::MAX), vertices.next().unwrap_or(u32::MAX))
+        };
+        let edges: Vec<(u32, u32)> = complex.simplices_of_dim(1).map(ends).collect();
+        let Some(values) = complex.filtration() else {
+            return Self::from_edges(complex.num_vertices(), &edges, None);
+        };
+        let of = |simplex: SimplexId| values.get(simplex.index()).copied().unwrap_or(f64::NAN);
+        let weights: Vec<f64> = complex.simplices_of_dim(1).map(of).collect();
+        let graph = Self::from_edges(complex.num_vertices(), &edges, Some(&weights))?;
+        graph.with_vertex_weights(complex.simplices_of_dim(0).map(of).collect())
+    }
+
     /// The graph with the given edges, all different and each with its lower vertex first, in parts as a search found
     /// them; weighted by `weight` if there is one.
     ///
@@ -164,7 +187,7 @@ impl Graph {
     }
 
     /// The graph of the edges with a weight of at most `most`, which keep their weights if `weighted`; edges without a
-    /// weight have the weight 0. The vertices stay, without weights.
+    /// weight have the weight 0. The vertices stay, and keep their weights likewise.
     #[must_use]
     pub fn up_to(&self, most: f64, weighted: bool) -> Self {
         let mut kept = Self { offsets: vec![0], upper: Vec::new(), weights: None, vertex_weights: None };
@@ -177,6 +200,7 @@ impl Graph {
             kept.offsets.push(kept.upper.len());
         }
         kept.weights = weighted.then_some(weights);
+        kept.vertex_weights = self.vertex_weights.clone().filter(|_| weighted);
         kept
     }
 

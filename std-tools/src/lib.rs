@@ -1,26 +1,33 @@
-//! Build, write, map and query Simplified Incidence Graphs: the library behind the command `sig`.
+//! Build, write, map and query simplicial complexes in flat arrays, as Simplified Incidence Graphs or as simplex trees: the
+//! library behind the command `sig`.
 //!
-//! Data flow one way: files are read into a [`soup`], the soup is built into arrays in canonical order, the arrays are
-//! encoded and written, and the file is mapped and queried through [`sig_core`].
+//! Data flow one way: files are read into a [`soup`] of simplices or a space of points, distances or a graph; these become
+//! arrays in canonical order; the arrays are encoded and written; and the file is mapped and queried through [`sig_core`].
 //!
 //! | step | module | main entry |
 //! |---|---|---|
 //! | read meshes and lists of simplices | [`io`] | [`io::read_path`], [`io::merge`](io::merge()) |
-//! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
-//! | arrays in canonical order | [`mod@build`] | [`build::build`] |
-//! | cliques of a graph as a simplex tree | [`graph`], [`mod@flag`], [`frozen`] | [`flag::expand`] |
-//! | a simplex tree to the same arrays | [`mod@build`] | [`build::complete`] |
 //! | read points, distances, graphs | [`io::space`] | [`io::space::read_space_path`] |
-//! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
-//! | witness complexes of points | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
+//! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
+//! | points and metrics | [`points`] | [`points::Points`], [`points::Metric`] |
+//! | all distances of a finite space | [`distances`] | [`distances::Distances`] |
+//! | clouds that are the same anywhere | [`generate`] | [`generate::sphere4`] |
 //! | a few of many points | [`subsample`] | [`subsample::farthest_points`] |
+//! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
+//! | a weighted graph | [`graph`] | [`graph::Graph`] |
+//! | simplices to arrays in canonical order | [`mod@build`] | [`build::build`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
-//! | contract edges of what is built | [`mod@contract`] | [`contract::contract`] |
+//! | cliques of a graph to a simplex tree | [`mod@flag`] | [`flag::expand`], [`flag::estimate`] |
+//! | landmarks and witnesses to a simplex tree | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
+//! | a simplex tree that changes | [`mod@simplex_tree`] | [`simplex_tree::SimplexTree`] |
+//! | a simplex tree in level order | [`frozen`] | [`frozen::FrozenTree`] |
+//! | a simplex tree to the whole arrays | [`mod@build`] | [`build::complete`] |
+//! | contract edges of the whole arrays | [`mod@contract`] | [`contract::contract`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
-//! | what `sig info` says of a complex | [`analysis`] | [`analysis::Analysis`] |
-//! | insert, remove, collapse, contract, expand | [`mod@simplex_tree`] | [`simplex_tree::SimplexTree`] |
-//! | simplices by the input's labels | [`names`], [`tops`] | [`names::find_simplex`] |
-//! | write meshes and lists | [`export`] | [`export::export`](export::export()) |
+//! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
+//! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
+//! | top simplices with orientations | [`tops`] | [`tops::top_simplices`] |
+//! | write meshes, lists, GUDHI's text | [`export`] | [`export::export`](export::export()) |
 //!
 //! ```
 //! # use sig_tools::{build, io, store, store::atomic, Mapped};

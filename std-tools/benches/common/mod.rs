@@ -7,12 +7,13 @@
 pub(crate) mod chart;
 
 use std::error::Error;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
 use sig_tools::points::Points;
+use sig_tools::soup::{Labels, Soup};
 
 /// The arguments of a benchmark: without the one that cargo adds.
 pub(crate) fn arguments() -> Vec<String> {
@@ -53,6 +54,11 @@ pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> Result<
     Ok(rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(work))
 }
 
+/// The peer's program for complexes of points, if the environment names one: see README.md.
+pub(crate) fn peer() -> Option<OsString> {
+    std::env::var_os("GUDHI_BENCH")
+}
+
 /// What a peer's program prints.
 pub(crate) fn run(program: &OsStr, arguments: &[&OsStr]) -> Result<String, Box<dyn Error>> {
     let output = Command::new(program).args(arguments).output()?;
@@ -68,6 +74,25 @@ pub(crate) fn figure(text: &str, key: &str) -> Result<f64, Box<dyn Error>> {
     let rest = text.split(key).nth(1).ok_or_else(|| format!("no figure {key} of the peer in:\n{text}"))?;
     let end = rest.find(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c))).unwrap_or(rest.len());
     Ok(rest[..end].parse()?)
+}
+
+/// The numbers of simplices by dimension that a peer prints after `dims=`.
+pub(crate) fn counts(text: &str) -> Result<Vec<usize>, Box<dyn Error>> {
+    let numbers = text.split("dims=").nth(1).and_then(|rest| rest.lines().next()).ok_or("no counts of the peer")?;
+    Ok(numbers.split_whitespace().map(str::parse).collect::<Result<_, _>>()?)
+}
+
+/// The Freudenthal triangulation of a grid of side³ vertices: six tetrahedra a cube, one for each order of the axes.
+pub(crate) fn grid(side: u32) -> Soup {
+    let mut soup = Soup::new(Labels::Numbered((side * side * side) as usize), true);
+    let steps = [1, side, side * side];
+    for corner in (0..side * side * side).filter(|v| steps.iter().all(|step| v / step % side < side - 1)) {
+        for [a, b, c] in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let (one, two) = (corner + steps[a], corner + steps[a] + steps[b]);
+            soup.push(&[corner, one, two, two + steps[c]]);
+        }
+    }
+    soup
 }
 
 /// The largest resident set of this process so far, in bytes; `None` where the system does not tell.

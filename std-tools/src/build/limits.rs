@@ -93,8 +93,9 @@ fn bytes_per_face(dim: Dim, count: u64) -> u64 {
     4 + width * (2 + (dim as u64).div_ceil(2))
 }
 
-/// The memory that the system says is available; `None` if it says nothing.
-pub(crate) fn available_memory() -> Option<u64> {
+/// The bytes of memory that the system says are available; `None` if it says nothing.
+#[must_use]
+pub fn available_memory() -> Option<u64> {
     let info = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = info.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)

@@ -155,18 +155,9 @@ impl Args {
     }
 
     fn read_one(&self, path: &Path) -> Result<(Soup, ReadReport), readers::ReadError> {
-        let mut options =
+        let options =
             ReadOptions { format: self.format, drop_degenerate: self.drop_degenerate, ..ReadOptions::default() };
-        if !progress::is_watched() {
-            return readers::read_path(path, &options);
-        }
-        let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).map(|metadata| metadata.len());
-        let bar = progress::bytes(length, &path.display().to_string());
-        let show = |bytes| bar.set_position(bytes);
-        options.progress = Some(&show);
-        let read = readers::read_path(path, &options);
-        bar.finish_and_clear();
-        read
+        progress::reading(path, |progress| readers::read_path(path, &ReadOptions { progress, ..options }))
     }
 
     fn build(&self, soup: Soup) -> Result<Built, build::BuildError> {

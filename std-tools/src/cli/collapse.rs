@@ -6,7 +6,7 @@ use serde::Serialize;
 use sig_tools::simplex_tree::{Collapses, Vertices};
 
 use super::frozen_output::{self, FrozenTarget};
-use super::{UsageError, output, tree_input};
+use super::{UsageError, output, progress, tree_input};
 
 /// Collapse free pairs until none is left
 ///
@@ -58,7 +58,7 @@ impl Args {
         let (mut tree, vertices) = tree_input::read(&self.input)?;
         tree_input::log(&self.input, &tree);
         let input_simplices = tree.counts().to_vec();
-        let collapses = tree.collapse_all()?;
+        let collapses = progress::during("collapsing", || tree.collapse_all())?;
         if let Some(path) = &self.sequence {
             let existing = self.target.target.existing();
             output::to_path(path, existing, |out| write_sequence(&collapses, &vertices, out))?;
@@ -67,7 +67,7 @@ impl Args {
         let mut frozen = tree.freeze();
         drop(tree);
         vertices.restore(&mut frozen);
-        let written = frozen_output::write(frozen, &self.target)?;
+        let written = frozen_output::write(frozen, &self.target, None)?;
         written.log();
         if self.json {
             output::json(&Report { input_simplices, collapses: collapses.len(), written })?;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use sig_tools::simplex_tree::{Contraction, LinkCondition, SimplexTree, Vertices};
 
 use super::frozen_output::{self, FrozenTarget};
-use super::{UsageError, output, tree_input};
+use super::{UsageError, output, progress, tree_input};
 
 /// Contract edges, keeping the homotopy type
 ///
@@ -75,14 +75,14 @@ impl Args {
         }
         let mut contractions: Vec<Contraction> = Vec::new();
         if self.all {
-            contractions = tree.contract_all(self.target, condition)?;
+            contractions = progress::during("contracting", || tree.contract_all(self.target, condition))?;
         }
         let contractions = edges.len() + contractions.len();
         output::log(format_args!("did    {} contractions", output::grouped(contractions)));
         let mut frozen = tree.freeze();
         drop(tree);
         vertices.restore(&mut frozen);
-        let written = frozen_output::write(frozen, &self.target_file)?;
+        let written = frozen_output::write(frozen, &self.target_file, None)?;
         written.log();
         if self.json {
             output::json(&Report { input_simplices, contractions, written })?;

@@ -1,7 +1,7 @@
 //! `sig export`: a complex in the formats of other programs.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use sig_tools::export::{self, ExportError, Format};
@@ -11,7 +11,7 @@ use sig_tools::with_view;
 use super::input::Input;
 use super::{UsageError, output};
 
-/// Write the top simplices of a complex in another format
+/// Write a complex in another format
 ///
 /// What the format cannot hold is refused, never left out in silence.
 #[derive(clap::Args)]
@@ -19,6 +19,7 @@ use super::{UsageError, output};
 Examples:
   sig export bunny.sigc -o bunny.vtu                  for ParaView; the format goes by the name
   sig export rips.sigc -o rips.txt --format simplices
+  sig export rips.sigc -o rips.gudhi                  for GUDHI's Simplex_tree: all simplices
   sig export bunny.sigc -o - --format off | gzip > bunny.off.gz")]
 pub(super) struct Args {
     /// The file to export; `-` is standard input
@@ -34,29 +35,7 @@ pub(super) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
-        let format = self.format()?;
-        let (path, existing) = (&self.target.output, self.target.existing());
-        output::check(path, existing, std::slice::from_ref(&self.file))?;
-        let input = Input::open(&self.file, Access::Normal)?;
-        let view = input.view();
-        let file = || self.file.display().to_string();
-        // As long as writing, and a damaged file would come out as a mesh that is another.
-        with_view!(view, complex => complex.validate())
-            .with_context(|| format!("{}: damaged; see sig verify", file()))?;
-        with_view!(view, complex => export::check(&complex, format)).with_context(file)?;
-        let mut notes = Vec::new();
-        output::to_path(path, existing, |out| {
-            notes =
-                with_view!(view, complex => export::export(&complex, format, out)).map_err(|error| match error {
-                    ExportError::Io(error) => error,
-                    other => io::Error::other(other),
-                })?;
-            Ok(())
-        })?;
-        for note in notes {
-            output::log(format_args!("sig: note: {format}: {note}"));
-        }
-        Ok(())
+        export(&self.file, &self.target, self.format()?)
     }
 
     fn format(&self) -> Result<Format, UsageError> {
@@ -75,4 +54,28 @@ impl Args {
             UsageError(format!("{}: {what}; use --format with one of: {}", path.display(), names.join(", ")))
         })
     }
+}
+
+/// Writes the complex in `file` to the target, and says what is left out.
+pub(super) fn export(file: &Path, target: &output::Target, format: Format) -> anyhow::Result<()> {
+    let (path, existing) = (&target.output, target.existing());
+    output::check(path, existing, &[file.to_owned()])?;
+    let input = Input::open(file, Access::Normal)?;
+    let view = input.view();
+    let file = || file.display().to_string();
+    // As long as writing, and a damaged file would come out as a mesh that is another.
+    with_view!(view, complex => complex.validate()).with_context(|| format!("{}: damaged; see sig verify", file()))?;
+    with_view!(view, complex => export::check(&complex, format)).with_context(file)?;
+    let mut notes = Vec::new();
+    output::to_path(path, existing, |out| {
+        notes = with_view!(view, complex => export::export(&complex, format, out)).map_err(|error| match error {
+            ExportError::Io(error) => error,
+            other => io::Error::other(other),
+        })?;
+        Ok(())
+    })?;
+    for note in notes {
+        output::log(format_args!("sig: note: {format}: {note}"));
+    }
+    Ok(())
 }

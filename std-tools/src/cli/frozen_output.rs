@@ -2,14 +2,15 @@
 //! complex by its tree.
 
 use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use clap::ValueEnum;
 use serde::Serialize;
-use sig_tools::build::{self, BuildError, BuildOptions, Built, VertexOrder};
-use sig_tools::frozen::FrozenTree;
+use sig_core::IndexWidth;
+use sig_tools::build::{self, BuildError, BuildOptions, Built};
+use sig_tools::frozen::{FrozenTree, LastVertices};
 use sig_tools::simplex_tree::SimplexTree;
-use sig_tools::soup::{Labels, Soup};
 use sig_tools::store::{EncodeOptions, Encoding};
 
 use super::output::{self, grouped};
@@ -58,6 +59,69 @@ impl FrozenTarget {
         }
         output::check(path, self.target.existing(), inputs)
     }
+
+    /// The bytes that are free on the disk of the file, if the system tells. A file of this program takes at least what its
+    /// tree takes in memory; of text there is no such bound.
+    pub(super) fn free_bytes(&self) -> Option<u64> {
+        let path = &self.target.output;
+        if self.kind == Kind::Gudhi || output::is_stdout(path) { None } else { free_bytes(path) }
+    }
+
+    /// Refuses to begin a file that the disk cannot hold.
+    fn check_disk(&self, tree: &FrozenTree) -> anyhow::Result<()> {
+        let needed = least_bytes(tree, self.kind);
+        match self.free_bytes().filter(|&free| free < needed) {
+            None => Ok(()),
+            Some(free) => {
+                Err(anyhow::anyhow!("{}", self.full_disk(&format!("more than {} bytes", grouped(needed)), free)))
+            }
+        }
+    }
+
+    /// Says that the file takes more than is free.
+    pub(super) fn full_disk(&self, needed: &str, free: u64) -> String {
+        let path = self.target.output.display();
+        format!("{path}: the file takes {needed}, and the disk has {} free", grouped(free))
+    }
+}
+
+/// The bytes that are free on the disk of a file to be written, if the system tells.
+fn free_bytes(path: &Path) -> Option<u64> {
+    #[cfg(unix)]
+    {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let disk = rustix::fs::statvfs(folder).ok()?;
+        disk.f_bavail.checked_mul(disk.f_frsize)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = path;
+        None
+    }
+}
+
+/// Bytes that the file takes at the least: vertices and values, and of the relations all but the lists.
+fn least_bytes(tree: &FrozenTree, kind: Kind) -> u64 {
+    let label = if matches!(tree.last_vertices, LastVertices::Bits16(_)) { 2 } else { 4 };
+    let value = if tree.filtration.is_some() { 8 } else { 0 };
+    let index = IndexWidth::least_for(tree.num_simplices as u64).map_or(8, |width| width.bytes() as u64);
+    let facets = |dim: u64| if kind == Kind::Sig { (dim + 1) * index } else { 0 };
+    (0..).zip(tree.counts()).map(|(dim, count)| count as u64 * (label + value + facets(dim))).sum()
+}
+
+/// Adds the relations to a tree.
+fn complete(tree: FrozenTree, memory: Option<u64>) -> anyhow::Result<Built> {
+    let bars = progress::Phases::new();
+    let show = |phase, done, total| bars.show(phase, done, total);
+    let progress = progress::is_watched().then_some(&show as build::Progress<'_>);
+    let built = build::complete(tree, &BuildOptions { progress, max_bytes: memory, ..BuildOptions::default() });
+    bars.clear();
+    match built {
+        Err(error @ BuildError::TooLarge { .. }) => {
+            Err(error).context("the relations do not fit into memory; --kind tree does without them")
+        }
+        built => Ok(built?),
+    }
 }
 
 /// What was written; as JSON, the names of the fields.
@@ -73,8 +137,10 @@ pub(super) struct Written {
     simplices: Vec<usize>,
 }
 
-/// Writes the tree, completed to a Simplified Incidence Graph if the target asks for one.
-pub(super) fn write(tree: FrozenTree, target: &FrozenTarget) -> anyhow::Result<Written> {
+/// Writes the tree, completed to a Simplified Incidence Graph if the target asks for one; that may take as many bytes of
+/// memory as are told, or are free.
+pub(super) fn write(tree: FrozenTree, target: &FrozenTarget, memory: Option<u64>) -> anyhow::Result<Written> {
+    target.check_disk(&tree)?;
     let options = EncodeOptions {
         checksums: !target.no_checksums,
         provenance: target.provenance.as_deref(),
@@ -82,26 +148,17 @@ pub(super) fn write(tree: FrozenTree, target: &FrozenTarget) -> anyhow::Result<W
     };
     let simplices = tree.counts();
     let write = |encoding: Encoding<'_>| -> anyhow::Result<(u64, Option<u32>)> {
-        output::to_path(&target.target.output, target.target.existing(), |out| encoding.write_to(out))?;
+        to_path(target, |out| encoding.write_to(out))?;
         Ok((encoding.file_bytes()?, Some(encoding.width().bits())))
     };
     let (file_bytes, index_bits) = match target.kind {
         Kind::Tree => write(Encoding::of_tree(&tree, &options)?)?,
-        Kind::Sig => {
-            let bars = progress::Phases::new();
-            let show = |phase, done, total| bars.show(phase, done, total);
-            let progress = progress::is_watched().then_some(&show as build::Progress<'_>);
-            let built = complete(tree, &BuildOptions { progress, ..BuildOptions::default() });
-            bars.clear();
-            write(Encoding::new(&built?, &options)?)?
-        }
+        Kind::Sig => write(Encoding::new(&complete(tree, memory)?, &options)?)?,
         Kind::Gudhi => {
             let (thawed, _) = SimplexTree::thaw(&tree)?;
             drop(tree);
             let mut bytes = 0;
-            output::to_path(&target.target.output, target.target.existing(), |out| {
-                thawed.write_text(Counted { out, bytes: &mut bytes })
-            })?;
+            to_path(target, |out| thawed.write_text(Counted { out, bytes: &mut bytes }))?;
             (bytes, None)
         }
     };
@@ -117,6 +174,15 @@ pub(super) fn write(tree: FrozenTree, target: &FrozenTarget) -> anyhow::Result<W
         dimension: i64::try_from(simplices.len()).unwrap_or(i64::MAX) - 1,
         simplices,
     })
+}
+
+fn to_path(target: &FrozenTarget, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> anyhow::Result<()> {
+    let (path, existing) = (&target.target.output, target.target.existing());
+    if output::is_stdout(path) {
+        // A bar would run across the data.
+        return output::to_path(path, existing, fill);
+    }
+    progress::during("writing the file", || output::to_path(path, existing, fill))
 }
 
 impl Written {
@@ -147,29 +213,4 @@ impl Write for Counted<'_> {
     fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
     }
-}
-
-/// The whole graph of a tree, by way of its simplices. The vertices keep their numbers, so ids are the tree's.
-fn complete(tree: FrozenTree, options: &BuildOptions<'_>) -> Result<Built, BuildError> {
-    let FrozenTree { labels, coordinates, filtration, .. } = &tree;
-    let mut soup = Soup::new(Labels::Numbered(tree.num_vertices()), true);
-    let mut word = Vec::new();
-    for vertex in 0..tree.num_vertices() {
-        push_subtree(&tree, vertex, &mut word, &mut soup);
-    }
-    let (labels, coordinates, filtration) = (labels.clone(), coordinates.clone(), filtration.clone());
-    drop(tree);
-    let options = BuildOptions { order: VertexOrder::Input, ..*options };
-    Ok(Built { labels, coordinates, filtration, ..build::build(soup, &options)? })
-}
-
-fn push_subtree(tree: &FrozenTree, id: usize, word: &mut Vec<u32>, soup: &mut Soup) {
-    word.push(tree.last_vertices.at(id));
-    let children = tree.children(id);
-    // Words that start with this one are its cofaces: listing those is enough.
-    if children.is_empty() {
-        soup.push(word);
-    }
-    children.for_each(|child| push_subtree(tree, child, word, soup));
-    word.pop();
 }

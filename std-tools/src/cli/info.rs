@@ -9,21 +9,27 @@ use sig_core::format::{Column, Container, SectionKind};
 use sig_core::storage::{ClusterCounts, FileStorage, PaperStorage};
 use sig_core::{Complex, Dim, Index, Relations, with_complex, with_tree};
 use sig_tools::View;
-use sig_tools::analysis::Analysis;
+use sig_tools::analysis::{Analysis, num_top_simplices};
 use sig_tools::store::Access;
 
 use super::input::Input;
 use super::output::{self, grouped, table};
+use super::progress;
 
 /// Show what is in a file: simplices, clusters, components, storage
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   sig info bunny.sigc
+  sig info rips.sigc --tops            the top simplices of a tree, too
   sig info bunny.sigc --json | jq .euler_characteristic")]
 pub(super) struct Args {
     /// The file; `-` is standard input
     file: PathBuf,
+
+    /// Count the top simplices of a tree, by a search for each facet; of a SIG they are always counted
+    #[arg(long)]
+    tops: bool,
 
     /// Print a JSON object
     #[arg(long)]
@@ -35,7 +41,10 @@ impl Args {
         let input = Input::open(&self.file, Access::Sequential)?;
         let summary = match input.view() {
             View::Complex(any) => with_complex!(any, complex => Summary::of_complex(&complex)),
-            View::Tree(any) => with_tree!(any, tree => Summary::new(&tree, tree.container())),
+            View::Tree(any) => with_tree!(any, tree => Summary {
+                top_simplices: self.tops.then(|| progress::during("counting top simplices", || num_top_simplices(&tree))),
+                ..Summary::new(&tree, tree.container())
+            }),
         };
         if self.json {
             output::json(&summary)?;
@@ -67,6 +76,8 @@ struct Summary {
     storage: Option<Storage>,
     labels: &'static str,
     coordinates: Option<Coordinates>,
+    /// The least and the largest filtration value.
+    filtration: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     provenance: Option<String>,
     sections: Vec<Section>,
@@ -209,6 +220,7 @@ impl Summary {
                 components: section.components,
                 bits: if matches!(section.column, Column::F32(_)) { 32 } else { 64 },
             }),
+            filtration: complex.filtration().filter(|values| !values.is_empty()).map(range),
             provenance: container
                 .section(SectionKind::Provenance)
                 .and_then(|section| std::str::from_utf8(section.column.as_bytes()).ok().map(str::to_owned)),
@@ -248,13 +260,14 @@ impl Summary {
         let head = first("dimension", "simplices".to_owned());
         let rows = self.simplices.iter().enumerate().map(|(dim, &count)| first(&dim.to_string(), grouped(count)));
         let mut rows: Vec<_> = std::iter::once(head).chain(rows).chain([first("all", sum(&self.simplices))]).collect();
-        let (Some(tops), Some(facts)) = (&self.top_simplices, &self.facts) else { return rows };
+        let Some(tops) = &self.top_simplices else { return rows };
         let mut add = |head: String, cells: &dyn Fn(Dim) -> String, total: String| {
             let cells = (0..self.simplices.len()).map(cells);
             let column = std::iter::once(head).chain(cells).chain([total]);
             rows.iter_mut().zip(column).for_each(|(row, cell)| row.push(cell));
         };
         add("top".to_owned(), &|p| grouped(tops[p]), sum(tops));
+        let Some(facts) = &self.facts else { return rows };
         let clusters = &facts.clusters;
         for g in (1..self.simplices.len()).filter(|g| clusters.iter().any(|c| c.g == *g)) {
             let count = |p: Dim| clusters.iter().find(|c| (c.p, c.g) == (p, g)).map_or(0, |c| c.count);
@@ -286,6 +299,8 @@ impl Summary {
         }
         rows.push(vec!["vertex labels".to_owned(), self.labels.to_owned()]);
         rows.push(vec!["coordinates".to_owned(), coordinates]);
+        let filtration = self.filtration.map(|[least, most]| format!("{least} to {most}"));
+        rows.push(vec!["filtration values".to_owned(), filtration.unwrap_or("none".to_owned())]);
         if let Some(provenance) = &self.provenance {
             rows.push(vec!["provenance".to_owned(), provenance.clone()]);
         }
@@ -320,10 +335,19 @@ impl Summary {
             ("header and padding", self.file_bytes - all),
             ("file", self.file_bytes),
         ];
-        let row = |(name, bytes): (&str, usize)| vec![name.to_owned(), grouped(bytes), percent(bytes, self.file_bytes)];
-        let head = vec!["bytes".to_owned(), String::new(), String::new()];
+        let simplices = self.simplices.iter().sum::<usize>() as f64;
+        let row = |(name, bytes): (&str, usize)| {
+            let each = format!("{:.2}", bytes as f64 / simplices);
+            vec![name.to_owned(), grouped(bytes), percent(bytes, self.file_bytes), each]
+        };
+        let head = ["bytes", "", "", "a simplex"].map(str::to_owned).to_vec();
         std::iter::once(head).chain(parts.into_iter().map(row)).collect()
     }
+}
+
+/// The least and the largest of some values.
+fn range(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &value| [least.min(value), most.max(value)])
 }
 
 /// A share in percent, with one decimal; `-` of nothing.

@@ -9,6 +9,7 @@ mod collapse;
 mod completions;
 mod contract;
 mod expand;
+mod expansion;
 mod export;
 mod frozen_output;
 mod info;
@@ -42,6 +43,8 @@ const EXAMPLES: &str = "\
 Examples:
   sig build bunny.off -o bunny.sigc     a mesh becomes a complex with all its relations
   sig rips cloud.npy -r 0.3 -o c.sigc   the Rips complex of points
+  sig witness c.npy --maxmin 300 -o w.sigc  the witness complex of 300 landmarks among them
+  sig collapse c.sigc -o small.sigc     fewer simplices, the same homotopy type
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
   sig verify bunny.sigc                 whether it is whole and right
@@ -55,14 +58,14 @@ enum Command {
     Build(build::Args),
     Rips(rips::Args),
     Witness(witness::Args),
-    Info(info::Args),
-    Query(query::Args),
-    Verify(verify::Args),
-    Export(export::Args),
     Expand(expand::Args),
     Collapse(collapse::Args),
     Contract(contract::Args),
+    Info(info::Args),
+    Query(query::Args),
     Tree(tree::Args),
+    Verify(verify::Args),
+    Export(export::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -73,14 +76,14 @@ impl Command {
             Self::Build(args) => args.run(),
             Self::Rips(args) => args.run(),
             Self::Witness(args) => args.run(),
-            Self::Info(args) => args.run(),
-            Self::Query(args) => args.run(),
-            Self::Verify(args) => args.run(),
-            Self::Export(args) => args.run(),
             Self::Expand(args) => args.run(),
             Self::Collapse(args) => args.run(),
             Self::Contract(args) => args.run(),
+            Self::Info(args) => args.run(),
+            Self::Query(args) => args.run(),
             Self::Tree(args) => args.run(),
+            Self::Verify(args) => args.run(),
+            Self::Export(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Man(args) => args.run(),
         }

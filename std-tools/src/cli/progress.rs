@@ -1,7 +1,9 @@
 //! Progress bars on standard error, if that is a terminal.
 
 use std::io::IsTerminal;
+use std::path::Path;
 use std::sync::Mutex;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use sig_tools::build::Phase;
@@ -28,6 +30,39 @@ pub(super) fn bytes(length: Option<u64>, name: &str) -> ProgressBar {
         "{msg:28!} {bytes} {bytes_per_sec}"
     };
     bar(length, template, format!("reading {name}"))
+}
+
+/// Reads a file, which may be standard input, with a bar for what the reader is to be called with.
+pub(super) fn reading<T>(path: &Path, read: impl FnOnce(Option<&(dyn Fn(u64) + Sync)>) -> T) -> T {
+    let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).map(|file| file.len());
+    reading_of(length, &path.display().to_string(), read)
+}
+
+/// The same of an input that is open.
+pub(super) fn reading_of<T>(
+    length: Option<u64>,
+    name: &str,
+    read: impl FnOnce(Option<&(dyn Fn(u64) + Sync)>) -> T,
+) -> T {
+    if !is_watched() {
+        return read(None);
+    }
+    let bar = bytes(length, name);
+    let result = read(Some(&|bytes| bar.set_position(bytes)));
+    bar.finish_and_clear();
+    result
+}
+
+/// Does some work of which nobody knows how far it is, and shows meanwhile that it goes on.
+pub(super) fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+    if !is_watched() {
+        return work();
+    }
+    let bar = bar(None, "{msg:28!} {spinner} {elapsed}", what.to_owned());
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let result = work();
+    bar.finish_and_clear();
+    result
 }
 
 /// Bars for the phases of building, one after the other.

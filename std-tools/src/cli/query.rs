@@ -19,6 +19,10 @@ use super::{UsageError, output};
 ///
 /// Answers come in the order of the ids, one simplex a line as labels separated by commas; with --json an array of
 /// arrays of labels; of clusters, an array of objects with dimension, representative and members.
+///
+/// A file of kind tree answers all but clusters: cofaces, star, link and adjacency by searching the neighbours that the
+/// vertices of the simplex have in common. A file of kind sig has these relations stored; sig tree convert --kind sig
+/// computes them.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -7,15 +7,16 @@ use anyhow::Context;
 use clap::{Subcommand, ValueEnum};
 use serde::Serialize;
 use sig_core::{Dim, Relations, SimplexId, VertexId};
+use sig_tools::export::Format;
 use sig_tools::frozen::{FrozenTree, MAX_SIMPLICES};
 use sig_tools::names::{FindError, find_simplex, simplex_labels};
-use sig_tools::simplex_tree::SimplexTree;
 use sig_tools::store::Access;
 use sig_tools::with_view;
 
 use super::frozen_output::{self, FrozenTarget};
 use super::input::Input;
 use super::output;
+use super::tree_input::{self, Opened};
 
 /// List a complex as the words of its simplex tree, or write it as another kind of file
 ///
@@ -30,6 +31,7 @@ Examples:
   sig tree children rips.sigc 3,17               the simplices with one vertex more, after the last one
   sig tree prefix rips.sigc 3,17                 all simplices whose words start so
   sig tree convert rips.sigc -o all.sigc --kind sig    compute boundary and co-boundary relations as well
+  sig tree convert gudhi.txt -o tree.sigc --kind tree  GUDHI's text becomes a file
   sig tree text rips.sigc -o rips.txt            for GUDHI's Simplex_tree")]
 pub(super) struct Args {
     #[command(subcommand)]
@@ -61,7 +63,7 @@ enum Command {
     Prefix(OfSimplex),
     /// Write the complex as a file of either kind
     Convert {
-        /// The file; `-` is standard input
+        /// A file of this program, or GUDHI's simplex-tree text; `-` is standard input
         file: PathBuf,
 
         #[command(flatten)]
@@ -131,31 +133,22 @@ impl Args {
             }
             Command::Convert { file, target, json } => {
                 target.check(std::slice::from_ref(&file), json)?;
-                let written = frozen_output::write(frozen(&file)?, &target)?;
+                let written = frozen_output::write(frozen(&file)?, &target, None)?;
                 written.log();
                 Ok(if json { output::json(&written) } else { Ok(()) }?)
             }
-            Command::Text { file, target } => {
-                output::check(&target.output, target.existing(), std::slice::from_ref(&file))?;
-                let (tree, vertices) =
-                    SimplexTree::thaw(&frozen(&file)?).with_context(|| file.display().to_string())?;
-                let named = (0..).zip(0..tree.counts().first().copied().unwrap_or(0));
-                if named
-                    .into_iter()
-                    .any(|(label, _)| tree.contains(&[label]) && vertices.name(label) != label.to_string())
-                {
-                    output::log("sig: note: vertices are numbered, for the format has no other labels than numbers");
-                }
-                output::to_path(&target.output, target.existing(), |out| tree.write_text(out))
-            }
+            Command::Text { file, target } => super::export::export(&file, &target, Format::Gudhi),
         }
     }
 }
 
-/// The complex in a file, which is right.
+/// The complex in a file, which is right, or in GUDHI's text.
 fn frozen(file: &Path) -> anyhow::Result<FrozenTree> {
-    let name = || file.display().to_string();
-    let input = Input::open(file, Access::Sequential)?;
+    let input = match tree_input::open(file)? {
+        Opened::Ours(input) => input,
+        Opened::Other(reader, length) => return Ok(tree_input::read_text(reader, file, length)?.freeze()),
+    };
+    let name = || tree_input::displayed(file);
     with_view!(input.view(), complex => {
         complex.validate().with_context(|| format!("{}: damaged; see sig verify", name()))?;
         FrozenTree::of(&complex).with_context(|| format!("{}: more than {MAX_SIMPLICES} simplices", name()))

@@ -13,33 +13,48 @@ use sig_tools::{Loaded, with_view};
 use super::input::Input;
 use super::{output, progress};
 
-/// Reads the complex at `path`, `-` being standard input, and what is known of its vertices.
-pub(super) fn read(path: &Path) -> anyhow::Result<(SimplexTree, Vertices)> {
-    let name = path.display().to_string();
-    if path.as_os_str() == "-" {
-        return read_stream(io::stdin().lock());
-    }
-    let mut file = File::open(path).with_context(|| name.clone())?;
-    let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
-    if !is_file {
-        return read_stream(file);
-    }
-    if is_ours(&head(&mut file).with_context(|| name.clone())?) {
-        return thaw(&Input::open(path, Access::Sequential)?, &name);
-    }
-    let file = File::open(path).with_context(|| name.clone())?;
-    read_text(file, &name, std::fs::metadata(path).ok().map(|metadata| metadata.len()))
+/// An input, by what its first bytes say.
+pub(super) enum Opened {
+    /// A file of this program.
+    Ours(Input),
+    /// Something else, from its first byte on, and its length if that is known.
+    Other(Box<dyn Read>, Option<u64>),
 }
 
-/// Reads what cannot be read twice.
-fn read_stream(mut reader: impl Read) -> anyhow::Result<(SimplexTree, Vertices)> {
-    let head = head(&mut reader).context("<stdin>")?;
+/// Opens a file, or standard input if the path is `-`.
+pub(super) fn open(path: &Path) -> anyhow::Result<Opened> {
+    let name = || displayed(path);
+    let is_file = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) && !output::is_stdout(path);
+    let mut reader: Box<dyn Read> = if output::is_stdout(path) {
+        Box::new(io::stdin().lock())
+    } else {
+        Box::new(File::open(path).with_context(name)?)
+    };
+    let head = head(&mut reader).with_context(name)?;
     let ours = is_ours(&head);
     let reader = Cursor::new(head).chain(reader);
-    if ours {
-        return thaw(&Input::Loaded(Loaded::read(reader, Path::new("<stdin>"), 0)?), "<stdin>");
+    Ok(if ours && is_file {
+        Opened::Ours(Input::open(path, Access::Sequential)?)
+    } else if ours {
+        // What is no file cannot be read twice.
+        Opened::Ours(Input::Loaded(Loaded::read(reader, Path::new(&name()), 0)?))
+    } else {
+        let length = std::fs::metadata(path).ok().filter(|_| is_file).map(|metadata| metadata.len());
+        Opened::Other(Box::new(reader), length)
+    })
+}
+
+/// What messages call an input.
+pub(super) fn displayed(path: &Path) -> String {
+    if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() }
+}
+
+/// Reads the complex at `path`, `-` being standard input, and what is known of its vertices.
+pub(super) fn read(path: &Path) -> anyhow::Result<(SimplexTree, Vertices)> {
+    match open(path)? {
+        Opened::Ours(input) => progress::during("thawing", || thaw(&input, &displayed(path))),
+        Opened::Other(reader, length) => Ok((read_text(reader, path, length)?, Vertices::of_labels())),
     }
-    read_text(reader, "-", None)
 }
 
 /// The first bytes, as many as tell a file of this program.
@@ -61,13 +76,10 @@ fn thaw(input: &Input, name: &str) -> anyhow::Result<(SimplexTree, Vertices)> {
     })
 }
 
-fn read_text(reader: impl Read, name: &str, length: Option<u64>) -> anyhow::Result<(SimplexTree, Vertices)> {
-    let bar = progress::bytes(length, name);
-    let show = |bytes| bar.set_position(bytes);
-    let progress = progress::is_watched().then_some(&show as &(dyn Fn(u64) + Sync));
-    let tree = SimplexTree::read_text(reader, name, progress);
-    bar.finish_and_clear();
-    Ok((tree?, Vertices::of_labels()))
+/// Reads GUDHI's text.
+pub(super) fn read_text(reader: impl Read, path: &Path, length: Option<u64>) -> anyhow::Result<SimplexTree> {
+    let name = displayed(path);
+    Ok(progress::reading_of(length, &name, |progress| SimplexTree::read_text(reader, &name, progress))?)
 }
 
 /// The label in the tree of the vertex that the input calls so.
@@ -78,7 +90,7 @@ pub(super) fn vertex(tree: &SimplexTree, vertices: &Vertices, name: &str) -> any
 
 /// Says on standard error what was read.
 pub(super) fn log(path: &Path, tree: &SimplexTree) {
-    let name = if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() };
+    let name = displayed(path);
     let counts: Vec<_> = tree.counts().iter().map(output::grouped).collect();
     let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
     output::log(format_args!("read   {name}: {} simplices{counts}", output::grouped(tree.num_simplices())));

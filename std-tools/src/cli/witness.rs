@@ -117,13 +117,14 @@ impl Args {
         }
         let witnesses = self.read(&self.witnesses)?;
         let landmarks = self.landmarks(&witnesses, options.metric)?;
-        let complex = witness_complex(&witnesses, &landmarks, &options)?;
+        let build = || witness_complex(&witnesses, &landmarks, &options);
+        let complex = progress::during("building the complex", build)?;
         let report = Report {
             witnesses: witnesses.len(),
             coordinates: witnesses.dim(),
             landmarks: landmarks.numbers().len(),
             absent: complex.absent,
-            written: frozen_output::write(complex.tree, &self.target)?,
+            written: frozen_output::write(complex.tree, &self.target, None)?,
             seconds: start.elapsed().as_secs_f64(),
         };
         report.log();
@@ -154,22 +155,16 @@ impl Args {
         Ok(match (&self.choice.landmarks, self.choice.random, self.choice.maxmin) {
             (Some(path), ..) => Landmarks::all(self.read(path)?),
             (_, Some(count), _) => Landmarks::random(witnesses, count, self.seed)?,
-            (.., count) => Landmarks::maxmin(witnesses, metric, count.unwrap_or(0))?,
+            (.., count) => {
+                let choose = || Landmarks::maxmin(witnesses, metric, count.unwrap_or(0));
+                progress::during("choosing landmarks", choose)?
+            }
         })
     }
 
     fn read(&self, path: &Path) -> Result<Points, ReadError> {
-        let mut options = SpaceOptions { format: self.format, ..SpaceOptions::default() };
-        if !progress::is_watched() {
-            return Ok(read_points_path(path, &options)?.0);
-        }
-        let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).map(|metadata| metadata.len());
-        let bar = progress::bytes(length, &path.display().to_string());
-        let show = |bytes| bar.set_position(bytes);
-        options.progress = Some(&show);
-        let read = read_points_path(path, &options);
-        bar.finish_and_clear();
-        Ok(read?.0)
+        let options = SpaceOptions { format: self.format, ..SpaceOptions::default() };
+        Ok(progress::reading(path, |progress| read_points_path(path, &SpaceOptions { progress, ..options }))?.0)
     }
 }
 

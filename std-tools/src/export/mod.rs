@@ -1,9 +1,10 @@
-//! Writers: the top simplices of a complex in the formats of other programs, one file a format.
+//! Writers: the top simplices of a complex, or all, in the formats of other programs, one file a format.
 //!
 //! A writer refuses what its format cannot hold, before the first byte, and says what does; what it must leave out
 //! though the simplices are all there (labels, coordinates) it reports as a [`Note`]. Orientations are those of the
 //! input.
 
+mod gudhi;
 mod mesh;
 mod obj;
 mod off;
@@ -34,11 +35,13 @@ pub enum Format {
     SimplexList,
     /// VTK's unstructured grid for ParaView: tetrahedra, triangles, lines, vertices, all in one grid.
     Vtu,
+    /// GUDHI's simplex-tree text: all simplices with their filtration values.
+    Gudhi,
 }
 
 impl Format {
     /// All formats, in the order in which help texts list them.
-    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Ply, Self::SimplexList, Self::Vtu];
+    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Ply, Self::SimplexList, Self::Vtu, Self::Gudhi];
 
     /// The name of the format on a command line.
     #[must_use]
@@ -49,6 +52,7 @@ impl Format {
             Self::Ply => "ply",
             Self::SimplexList => "simplices",
             Self::Vtu => "vtu",
+            Self::Gudhi => "gudhi",
         }
     }
 
@@ -61,6 +65,7 @@ impl Format {
             Self::Ply => &["ply"],
             Self::SimplexList => &["simplices", "facets", "lst", "txt"],
             Self::Vtu => &["vtu"],
+            Self::Gudhi => &["gudhi"],
         }
     }
 
@@ -73,6 +78,7 @@ impl Format {
             Self::Ply => "Stanford PLY in text: triangles and edges",
             Self::SimplexList => "one top simplex a line by its vertex labels: any dimension, no coordinates",
             Self::Vtu => "VTK unstructured grid, for ParaView: tetrahedra, triangles, lines and vertices",
+            Self::Gudhi => "GUDHI's simplex-tree text: all simplices with their filtration values, no coordinates",
         }
     }
 
@@ -88,7 +94,7 @@ impl Format {
         match self {
             Self::Off | Self::Obj | Self::Ply => 2,
             Self::Vtu => 3,
-            Self::SimplexList => sig_core::MAX_DIM,
+            Self::SimplexList | Self::Gudhi => sig_core::MAX_DIM,
         }
     }
 }
@@ -148,6 +154,8 @@ pub enum Note {
     CoordinatesLeftOut,
     /// Points of fewer than three coordinates were filled up with zeros.
     CoordinatesPadded,
+    /// The vertices are called by their numbers in the file, as the format has no labels but numbers.
+    VerticesNumbered,
 }
 
 impl fmt::Display for Note {
@@ -158,6 +166,7 @@ impl fmt::Display for Note {
             }
             Self::CoordinatesLeftOut => "coordinates are left out, for the format has none",
             Self::CoordinatesPadded => "points have fewer than three coordinates and are filled up with zeros",
+            Self::VerticesNumbered => "vertices are numbered, for the format has no other labels than numbers",
         })
     }
 }
@@ -173,6 +182,9 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
     if format == Format::SimplexList {
         return simplex_list::check_labels(complex);
     }
+    if format == Format::Gudhi {
+        return Ok(());
+    }
     let components = match complex.coordinates() {
         Some(section) => section.components as usize,
         // Nothing needs no coordinates.
@@ -183,14 +195,15 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
         Format::Obj => components == 3,
         Format::Ply => (2..=3).contains(&components),
         Format::Vtu => components <= 3,
-        Format::Off | Format::SimplexList => true,
+        Format::Off | Format::SimplexList | Format::Gudhi => true,
     };
     if holds { Ok(()) } else { Err(ExportError::Coordinates { format, components }) }
 }
 
-/// Writes the top simplices of a complex to `out`, which should be buffered, and returns what had to be left out.
+/// Writes the top simplices of a complex (to GUDHI's text all) to `out`, which should be buffered, and returns what had to be left out.
 ///
-/// Cost: linear in the complex and the output; the vertices are sorted by label if they are not in that order.
+/// Cost: linear in the complex and the output; the vertices are sorted by label if they are not in that order, for GUDHI's
+/// text the simplices by filtration value if there are any.
 ///
 /// # Errors
 /// [`ExportError`].
@@ -202,12 +215,18 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
         notes.extend(complex.coordinates().map(|_| Note::CoordinatesLeftOut));
         return Ok(notes);
     }
+    if format == Format::Gudhi {
+        gudhi::write(complex, out)?;
+        notes.extend((!gudhi::keeps_labels(complex)).then_some(Note::VerticesNumbered));
+        notes.extend(complex.coordinates().map(|_| Note::CoordinatesLeftOut));
+        return Ok(notes);
+    }
     let mesh = Mesh::new(complex);
     let first_number = match format {
         Format::Off => off::write(&mesh, out).map(|()| Some(0)),
         Format::Obj => obj::write(&mesh, out).map(|()| Some(1)),
         Format::Ply => ply::write(&mesh, out).map(|()| Some(0)),
-        Format::Vtu | Format::SimplexList => vtu::write(&mesh, out).map(|()| None),
+        Format::Vtu | Format::SimplexList | Format::Gudhi => vtu::write(&mesh, out).map(|()| None),
     }?;
     match first_number {
         Some(first) if !mesh.is_numbered_from(first) => notes.push(Note::LabelsLeftOut),

@@ -2,18 +2,42 @@
 
 use super::error::{ErrorKind, Fault, Position};
 use super::source::Source;
-use super::{Format, obj, off, simplex_list, stl};
+use super::{Format, gudhi, obj, off, simplex_list, stl};
 
 /// The format of an input called `name`.
 pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Fault> {
     let length = source.whole_length()?;
     let head = source.head()?;
+    refuse_complexes(head)?;
     // A list of simplices goes by many names, `.txt` among them, so content that looks like a mesh comes before it.
     let by_name = by_name(name);
-    certain(head, length)
+    let format = certain(head, length)
         .or_else(|| if by_name == Some(Format::SimplexList) { suggested(head).or(by_name) } else { by_name })
-        .or_else(|| suggested(head))
-        .ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownFormat))
+        .or_else(|| suggested(head));
+    // `.txt` says no more than that it is text.
+    let may_be_gudhi = match format {
+        Some(Format::SimplexList) => {
+            by_name.is_none() || name.to_ascii_lowercase().trim_end_matches(".gz").ends_with(".txt")
+        }
+        Some(_) => false,
+        None => true,
+    };
+    if may_be_gudhi && gudhi::is_no_list(head, length == Some(head.len() as u64)) {
+        let message = "this looks like GUDHI's simplex-tree text, of which `sig tree convert` makes a file; if it is a list of \
+                       simplices, --format simplices";
+        return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+    }
+    format.ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownFormat))
+}
+
+/// Refuses files that hold a complex already, and says what reads them.
+pub(super) fn refuse_complexes(head: &[u8]) -> Result<(), Fault> {
+    if !head.starts_with(&sig_core::format::MAGIC) {
+        return Ok(());
+    }
+    let message = "this is a complex already, in a file of this program: `sig info` tells what is in it, `sig expand` takes its \
+                   graph, `sig tree convert` its simplices";
+    Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())))
 }
 
 /// The format that the extension of a name stands for, that of a compressed file being the one before `.gz`.

@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Read, Write};
 
 use super::{InsertError, SimplexTree};
-use crate::io::gudhi::read_filtered;
+use crate::io::gudhi::{read_filtered, write_simplex};
 use crate::io::{ErrorKind, Position, ReadError};
 
 impl SimplexTree {
@@ -54,18 +54,7 @@ impl SimplexTree {
     pub fn write_text(&self, out: impl Write) -> io::Result<()> {
         let mut out = BufWriter::new(out);
         for simplex in self.by_filtration() {
-            let word = simplex.word();
-            write!(out, "{}", word.len() - 1)?;
-            for label in word {
-                write!(out, " {label}")?;
-            }
-            let value = simplex.value();
-            // Plain where that is short.
-            if value == 0.0 || (1e-5..1e16).contains(&value.abs()) || value.is_infinite() {
-                writeln!(out, " {value}")?;
-            } else {
-                writeln!(out, " {value:e}")?;
-            }
+            write_simplex(&mut out, &simplex.word(), simplex.value())?;
         }
         out.flush()
     }

@@ -216,8 +216,11 @@ impl SimplexTree {
     }
 }
 
-/// What a complex calls its vertices.
-pub(crate) fn names_of(complex: &impl Relations) -> Labels {
+/// What a complex in a file calls its vertices, by number.
+///
+/// Cost: a copy.
+#[must_use]
+pub fn names_of(complex: &impl Relations) -> Labels {
     use sig_core::complex::columns::Labels as Columns;
     match complex.labels() {
         Columns::Numbered => Labels::Numbered(complex.num_vertices()),
@@ -229,8 +232,11 @@ pub(crate) fn names_of(complex: &impl Relations) -> Labels {
     }
 }
 
-/// The coordinates of the vertices of a complex.
-pub(crate) fn coordinates_of(complex: &impl Relations) -> Option<Coordinates> {
+/// The coordinates of the vertices of a complex in a file, by number; `None` if there are none.
+///
+/// Cost: a copy.
+#[must_use]
+pub fn coordinates_of(complex: &impl Relations) -> Option<Coordinates> {
     use sig_core::format::Column;
     let section = complex.coordinates()?;
     let values = match section.column {

@@ -3,19 +3,28 @@
 use super::super::Format;
 use super::super::detect as mesh;
 use super::super::error::{ErrorKind, Fault, Position};
+use super::super::gudhi;
 use super::super::source::Source;
 use super::super::text::{Line, Origin, parse_float};
 use super::row::{COMMENT, fields};
 use super::{SpaceFormat, binary, npy};
 
-/// The format of an input called `name`.
-pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<SpaceFormat, Fault> {
+/// The format of an input called `name`, which may be known to be a graph.
+pub(super) fn format(source: &mut Source<'_>, name: &str, is_graph: bool) -> Result<SpaceFormat, Fault> {
     let length = source.whole_length()?;
     let head = source.head()?;
-    certain(head, length)
-        .or_else(|| by_name(name))
-        .or_else(|| by_shape(head, length))
-        .ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownSpace))
+    mesh::refuse_complexes(head)?;
+    let format = certain(head, length).or_else(|| by_name(name)).or_else(|| by_shape(head, length, is_graph));
+    let format = format.ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownSpace))?;
+    if !is_graph || matches!(format, SpaceFormat::Edges | SpaceFormat::Sparse | SpaceFormat::Gudhi | SpaceFormat::Dipha)
+    {
+        return Ok(format);
+    }
+    let message = format!(
+        "this looks like `{format}`, and a graph is needed: `sig rips` makes a complex of points or distances, `sig build` of \
+         simplices; --format says what else it is"
+    );
+    Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())))
 }
 
 /// The format of content that names it.
@@ -57,10 +66,15 @@ fn by_name(name: &str) -> Option<SpaceFormat> {
 }
 
 /// The format that the first rows of a text look like.
-fn by_shape(head: &[u8], length: Option<u64>) -> Option<SpaceFormat> {
+fn by_shape(head: &[u8], length: Option<u64>, is_graph: bool) -> Option<SpaceFormat> {
     /// Rows that are looked at.
     const ROWS: usize = 64;
     let whole = length == Some(head.len() as u64);
+    // Rows of vertices alone could as well be points.
+    let is_gudhi = |dims: Vec<usize>| dims.contains(&0) && (is_graph || dims.iter().any(|&dim| dim > 0));
+    if gudhi::dimensions(head, whole).is_some_and(is_gudhi) {
+        return Some(SpaceFormat::Gudhi);
+    }
     let begins_empty = head.starts_with(b"\n") || head.starts_with(b"\r\n");
     let mut lines: Vec<&[u8]> = head.split(|&byte| byte == b'\n').collect();
     if !whole && lines.len() > 1 {
@@ -80,6 +94,10 @@ fn by_shape(head: &[u8], length: Option<u64>) -> Option<SpaceFormat> {
         return rows.iter().all(is_edge).then_some(SpaceFormat::Edges);
     }
     rows.retain(|row| !row.is_empty());
+    let is_label = |field: &Option<f64>| field.is_some_and(|label| label >= 0.0 && label.fract() == 0.0);
+    if is_graph && rows.iter().all(|row| matches!(row.len(), 2 | 3) && row[..2].iter().all(is_label)) {
+        return Some(SpaceFormat::Edges);
+    }
     let first = rows.first()?.len();
     let lengths = || rows.iter().map(Vec::len);
     // Two rows of a triangle could as well be a slip in a table of points.

@@ -8,6 +8,7 @@
 mod binary;
 mod detect;
 mod edges;
+mod gudhi;
 mod matrix;
 mod npy;
 mod row;
@@ -69,6 +70,8 @@ pub enum SpaceFormat {
     Dipha,
     /// The edges of a graph, by labels, in text.
     Edges,
+    /// The vertices and edges of a complex in the text of GUDHI's `Simplex_tree`, with their values as weights.
+    Gudhi,
 }
 
 impl SpaceFormat {
@@ -85,6 +88,7 @@ impl SpaceFormat {
         Self::LowerBinary,
         Self::Dipha,
         Self::Edges,
+        Self::Gudhi,
     ];
 
     /// The name of the format on a command line.
@@ -102,6 +106,7 @@ impl SpaceFormat {
             Self::LowerBinary => "lower-binary",
             Self::Dipha => "dipha",
             Self::Edges => "edges",
+            Self::Gudhi => "gudhi",
         }
     }
 
@@ -122,6 +127,7 @@ impl SpaceFormat {
             Self::LowerBinary => "the rows of a distance matrix below the diagonal as 32-bit floats, little-endian",
             Self::Dipha => "DIPHA's distance matrix, full or sparse",
             Self::Edges => "a graph: lines u v or u v weight with any labels; a label alone is a vertex",
+            Self::Gudhi => "the graph of a complex: GUDHI's simplex-tree text, lines 0 v value, 1 v w value, …",
         }
     }
 }
@@ -137,6 +143,9 @@ impl fmt::Display for SpaceFormat {
 pub struct SpaceOptions<'a> {
     /// The format; found by content, then by name, if it is not given.
     pub format: Option<SpaceFormat>,
+    /// Whether the input is known to be a graph: rows of numbers are then read as edges or as GUDHI's text, where they could
+    /// as well be points.
+    pub is_graph: bool,
     /// Called now and then with the number of bytes read from the input, before decompression.
     pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
 }
@@ -144,7 +153,11 @@ pub struct SpaceOptions<'a> {
 impl fmt::Debug for SpaceOptions<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let progress = self.progress.is_some();
-        f.debug_struct("SpaceOptions").field("format", &self.format).field("progress", &progress).finish()
+        f.debug_struct("SpaceOptions")
+            .field("format", &self.format)
+            .field("is_graph", &self.is_graph)
+            .field("progress", &progress)
+            .finish()
     }
 }
 
@@ -167,7 +180,7 @@ pub struct SpaceReport {
 /// # Errors
 /// If the file cannot be read, if its format is not known, or if it breaks the rules of its format.
 pub fn read_space_path(path: impl AsRef<Path>, options: &SpaceOptions<'_>) -> Result<(Space, SpaceReport), ReadError> {
-    super::with_path(path.as_ref(), |reader, length, name| read_sized(reader, length, name, options))
+    super::with_path(path.as_ref(), |reader, length, name| read_space(reader, length, name, options))
 }
 
 /// Reads an input that is in memory and called `name`, as [`read_space_path`] does.
@@ -179,7 +192,7 @@ pub fn read_space_bytes(
     name: &str,
     options: &SpaceOptions<'_>,
 ) -> Result<(Space, SpaceReport), ReadError> {
-    read_sized(bytes, Some(bytes.len() as u64), name, options)
+    read_space(bytes, Some(bytes.len() as u64), name, options)
 }
 
 /// Reads a file, or standard input if `path` is `-`, that must hold points.
@@ -202,7 +215,11 @@ pub fn read_points_path(
     }
 }
 
-fn read_sized(
+/// Reads an input called `name`, of `length` bytes if that is known, as [`read_space_path`] does.
+///
+/// # Errors
+/// As [`read_space_path`].
+pub fn read_space(
     reader: impl Read,
     length: Option<u64>,
     name: &str,
@@ -212,7 +229,7 @@ fn read_sized(
         let mut source = Source::new(reader, length, options.progress)?;
         let format = match options.format {
             Some(format) => format,
-            None => detect::format(&mut source, name)?,
+            None => detect::format(&mut source, name, options.is_graph)?,
         };
         let mut repeated = 0;
         let space = match format {
@@ -227,6 +244,7 @@ fn read_sized(
             SpaceFormat::Dipha => binary::dipha(&mut source, &mut repeated)?,
             SpaceFormat::Sparse => edges::sparse(&mut source, &mut repeated)?,
             SpaceFormat::Edges => edges::list(&mut source, &mut repeated)?,
+            SpaceFormat::Gudhi => gudhi::read(&mut source)?,
         };
         Ok((space, SpaceReport { format, gzip: source.gzip, repeated }))
     };

@@ -351,3 +351,34 @@ proptest! {
         let _ = read_space_bytes(&bytes, "x", &SpaceOptions::default());
     }
 }
+
+#[test]
+fn the_graph_of_a_complex_in_the_text_of_gudhi() {
+    let text = "0 4 0\n0 2 0.25\n1 2 4 0.5\n0 9 1\n1 4 9 1\n1 2 9 2\n2 2 4 9 3\n1 4 2 0.75\n";
+    assert_eq!(detected(text.as_bytes(), "x.txt"), SpaceFormat::Gudhi);
+    let graph = Graph::from_edges(3, &[(0, 1), (1, 2), (0, 2)], Some(&[0.5, 1.0, 2.0])).unwrap();
+    let graph = graph.with_vertex_weights(vec![0.25, 0.0, 1.0]).unwrap();
+    let expected = Space::Graph { graph, labels: Labels::Integers(vec![2, 4, 9]) };
+    assert_eq!(read(text.as_bytes(), SpaceFormat::Gudhi), Ok(expected));
+    let refused = [
+        ("0 1 0\n1 1 2 0\n", "in:2:1: the vertex 2 of this edge is not in the input"),
+        ("0 1 0\n1 1 2 1\n0 2 3\n", "in:2:1: the value 1 is below 3, that of a vertex of this edge"),
+        ("0 1 0\n1 1 2\n", "in:2:6: expected the filtration value, but the line ends here"),
+    ];
+    for (text, message) in refused {
+        assert_eq!(refusal(text, SpaceFormat::Gudhi), message);
+    }
+}
+
+#[test]
+fn rows_that_could_be_points_are_a_graph_if_one_is_expected() {
+    let of_graph = |text: &str| {
+        let options = SpaceOptions { is_graph: true, ..SpaceOptions::default() };
+        read_space_bytes(text.as_bytes(), "x.txt", &options).unwrap().1.format
+    };
+    let cases = [("0 0 0\n0 1 0\n0 2 0\n", SpaceFormat::Gudhi), ("0 1\n1 2\n", SpaceFormat::Edges)];
+    for (text, format) in cases {
+        assert_eq!((of_graph(text), detected(text.as_bytes(), "x.txt")), (format, SpaceFormat::Points), "{text}");
+    }
+    assert_eq!(of_graph("1 2 0.5\n2 3 0.25\n"), SpaceFormat::Edges);
+}

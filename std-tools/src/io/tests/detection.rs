@@ -113,3 +113,19 @@ fn a_byte_order_mark_does_not_stick_to_the_first_word() {
     let (soup, _) = read_bytes("\u{feff}1 2\n".as_bytes(), "x.txt", &ReadOptions::default()).unwrap();
     assert_eq!(soup.labels, crate::soup::Labels::Integers(vec![1, 2]));
 }
+
+#[test]
+fn what_other_commands_read_is_refused_with_their_names() {
+    let refusal = |name: &str, bytes: &[u8]| {
+        read_bytes(bytes, name, &ReadOptions::default())
+            .map(|(_, report)| report.format)
+            .map_err(|error| error.to_string())
+    };
+    let text = b"0 0 0\n0 1 0\n1 0 1 0.5\n";
+    for name in ["-", "x.txt", "x"] {
+        assert!(refusal(name, text).unwrap_err().contains("sig tree convert"), "{name}");
+    }
+    assert_eq!(refusal("x.txt", b"0 1 2\n1 2 3 4\n"), Ok(Format::SimplexList));
+    assert!(refusal("x.facets", text).unwrap_err().starts_with("x.facets:1:1: the simplex repeats vertex 0"));
+    assert!(refusal("x", &sig_core::format::MAGIC).unwrap_err().starts_with("x: this is a complex already"));
+}
