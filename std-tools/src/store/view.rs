@@ -8,6 +8,7 @@ use sig_core::{AnyComplex, AnyTree};
 /// Both are [`Relations`](sig_core::Relations); [`with_view!`](crate::with_view) evaluates an expression with whichever it
 /// is.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a view is made where it is used, and never stored by the many")]
 pub enum View<'a> {
     /// A file of kind SIG.
     Complex(AnyComplex<'a>),

@@ -55,7 +55,7 @@ fn by_definition(witnesses: &Points, landmarks: &Points, options: &WitnessOption
 /// The simplices of a tree by the labels of their vertices, with their values.
 fn simplices(tree: &FrozenTree) -> BTreeMap<Vec<u32>, f64> {
     let label = |vertex: u32| match &tree.labels {
-        Labels::Integers(labels) => narrow(labels[vertex as usize] as usize),
+        Labels::Integers(labels) => u32::try_from(labels[vertex as usize]).expect("few landmarks"),
         _ => vertex,
     };
     let mut words: Vec<Vec<u32>> = vec![Vec::new(); tree.num_simplices];
