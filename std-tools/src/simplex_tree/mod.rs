@@ -68,7 +68,7 @@ use top::Tops;
 /// tree.insert_with_faces(&[1, 2, 3], 0.5)?;
 /// tree.insert_with_faces(&[3, 4], 1.0)?;
 /// assert_eq!(tree.counts(), [4, 4, 1]);
-/// assert_eq!(tree.cofaces(&[3]).count(), 5);
+/// assert_eq!(tree.star(&[3]).count(), 5);
 /// assert!(tree.link_condition(3, 4));
 /// tree.contract(3, 4)?;
 /// assert_eq!(tree.counts(), [3, 3, 1]);
