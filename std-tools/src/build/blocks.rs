@@ -1,52 +1,26 @@
 //! The simplices by their first vertex: [`Blocks`].
 //!
 //! In canonical order the simplices of one dimension with the same first vertex v stand together, the *block* of v. A
-//! coface of a simplex in the block has no vertex before v, and is in the block of its dimension; or one, and descends in
-//! the simplex tree from an edge (u, v); or two, from a triangle (u, u', v); and so on. What is found from cofacets and
-//! cofaces of codimension 2 is therefore found block by block, each on one thread, in arrays that fit its cache.
+//! cofacet of a simplex in the block is in the block of its own dimension, or has one vertex u before v, and then descends
+//! in the simplex tree from the edge (u, v). So the facets are transposed block by block, each on one thread, in arrays
+//! that fit its cache.
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
 use crate::build::SigArrays;
 
-/// Where the cofaces of the simplices in a block are. Simplices are given by their numbers within their dimension.
+/// The edges by their last vertex, those of each by increasing number: where the cofacets of the simplices in a block are
+/// that have a vertex before it. Edges are given by their numbers.
 pub(super) struct Blocks {
-    /// The edges, by their last vertex.
-    pub(super) edges: ByLastVertex,
-    /// The triangles, by their last vertex.
-    pub(super) triangles: ByLastVertex,
-    /// The edges with that vertex of each triangle, in the same order: without its first vertex, and without its second.
-    edges_of_triangles: Vec<[usize; 2]>,
+    starts: Vec<usize>,
+    edges: Vec<usize>,
 }
 
 impl Blocks {
     pub(super) fn new<I: Index>(arrays: &SigArrays<I>) -> Self {
-        let (edges, triangles) = (ByLastVertex::new(arrays, 1), ByLastVertex::new(arrays, 2));
-        let rows = arrays.facets(2);
-        let edge = |triangle: usize, i: usize| rows[triangle * 3 + i].to_usize() - arrays.first[1];
-        let edges_of = |&triangle: &usize| [edge(triangle, 0), edge(triangle, 1)];
-        let edges_of_triangles = triangles.numbers.par_iter().map(edges_of).collect();
-        Self { edges, triangles, edges_of_triangles }
-    }
-
-    /// The edges of the triangles whose last vertex is `vertex`.
-    pub(super) fn edges_of_triangles(&self, vertex: usize) -> &[[usize; 2]] {
-        &self.edges_of_triangles[self.triangles.range(vertex)]
-    }
-}
-
-/// The simplices of one dimension by their last vertex, those of each by increasing number.
-pub(super) struct ByLastVertex {
-    starts: Vec<usize>,
-    numbers: Vec<usize>,
-}
-
-impl ByLastVertex {
-    fn new<I: Index>(arrays: &SigArrays<I>, dim: Dim) -> Self {
-        let last_vertices = &arrays.last_vertices[arrays.ids(dim)];
+        let last_vertices = &arrays.last_vertices[arrays.ids(1)];
         let mut starts = vec![0; arrays.ids(0).len() + 2];
         for &vertex in last_vertices {
             starts[vertex as usize + 2] += 1;
@@ -55,31 +29,20 @@ impl ByLastVertex {
             starts[vertex] += starts[vertex - 1];
         }
         // Shifted by one, so that filling in moves each start to where it belongs.
-        let mut numbers = vec![0; last_vertices.len()];
-        for (number, &vertex) in last_vertices.iter().enumerate() {
+        let mut edges = vec![0; last_vertices.len()];
+        for (edge, &vertex) in last_vertices.iter().enumerate() {
             let next = &mut starts[vertex as usize + 1];
-            numbers[*next] = number;
+            edges[*next] = edge;
             *next += 1;
         }
         starts.pop();
-        Self { starts, numbers }
+        Self { starts, edges }
     }
 
+    /// The edges with the last vertex `vertex`.
     #[inline]
-    pub(super) fn of(&self, vertex: usize) -> &[usize] {
-        &self.numbers[self.range(vertex)]
-    }
-
-    /// Where those of a vertex stand.
-    #[inline]
-    pub(super) fn range(&self, vertex: usize) -> Range<usize> {
-        self.starts[vertex]..self.starts[vertex + 1]
-    }
-
-    /// What lies between two of `starts`, such as [`descendants`], for each simplex in this order: looked up here once, as
-    /// they are far apart there.
-    pub(super) fn ranges(&self, starts: &[usize]) -> Vec<Range<usize>> {
-        self.numbers.par_iter().map(|&number| starts[number]..starts[number + 1]).collect()
+    pub(super) fn edges(&self, vertex: usize) -> &[usize] {
+        &self.edges[self.starts[vertex]..self.starts[vertex + 1]]
     }
 }
 

@@ -110,7 +110,7 @@ impl<'a, I: Index> Columns<'a, I> {
 
     /// How often simplices of the block of `vertex` are facets.
     fn len(&self, vertex: usize) -> usize {
-        let below = self.of_vertices.edges.of(vertex).iter();
+        let below = self.of_vertices.edges(vertex).iter();
         let below: usize = below.map(|&edge| self.from_edges[edge + 1] - self.from_edges[edge]).sum();
         below + (self.blocks[vertex + 1] - self.blocks[vertex]) * self.dim
     }
@@ -121,7 +121,7 @@ impl<'a, I: Index> Columns<'a, I> {
     fn for_each(&self, vertex: usize, mut visit: impl FnMut(usize, usize)) {
         let rows = self.arrays.facets(self.dim);
         let first_facet = self.arrays.first[self.dim - 1];
-        for &edge in self.of_vertices.edges.of(vertex) {
+        for &edge in self.of_vertices.edges(vertex) {
             for top in self.from_edges[edge]..self.from_edges[edge + 1] {
                 visit(rows[top * (self.dim + 1)].to_usize() - first_facet, top);
             }

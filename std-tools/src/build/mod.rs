@@ -372,7 +372,11 @@ pub(crate) fn ids(first: &[usize], num_simplices: usize, dim: Dim) -> std::ops::
 
 /// Adds the partial co-boundary relations to the arrays of the faces, and reads off what is known of the listed
 /// simplices (`listed`: one byte a simplex, see [`local`]).
-fn finish<I: Index>(arrays: SigArrays<I>, listed: &[Vec<u8>], meter: &Meter<'_>) -> (Arrays, Vec<u8>, report::Counts)
+fn finish<I: clusters::Cell>(
+    arrays: SigArrays<I>,
+    listed: &[Vec<u8>],
+    meter: &Meter<'_>,
+) -> (Arrays, Vec<u8>, report::Counts)
 where
     Arrays: From<SigArrays<I>>,
 {

@@ -10,6 +10,7 @@ mod minima;
 mod sets;
 mod union;
 
+pub(super) use sets::Cell;
 use sig_core::Index;
 
 use crate::build::blocks::Blocks;
@@ -23,7 +24,7 @@ const MANY_FACES: usize = 16;
 
 /// Completes the arrays of the faces with the relations. `is_top[p]` tells which p-simplices are top, or is empty if
 /// none is.
-pub(super) fn add<I: Index>(arrays: SigArrays<I>, is_top: &[Vec<bool>], meter: &Meter<'_>) -> Arrays
+pub(super) fn add<I: Cell>(arrays: SigArrays<I>, is_top: &[Vec<bool>], meter: &Meter<'_>) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
@@ -44,7 +45,7 @@ where
 }
 
 /// The arrays with the relations by union-find.
-fn by_union<I: Index>(arrays: SigArrays<I>, stage: &Stage<'_>) -> Arrays
+fn by_union<I: Cell>(arrays: SigArrays<I>, stage: &Stage<'_>) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
@@ -63,7 +64,7 @@ mod tests {
     use crate::soup::{Labels, Soup};
 
     /// The arrays with the lists by local minima.
-    fn by_minima<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> SigArrays<u64>
+    fn by_minima<I: Cell, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> SigArrays<u64>
     where
         Arrays: From<SigArrays<I>>,
     {
