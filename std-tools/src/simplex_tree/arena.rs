@@ -138,6 +138,27 @@ impl Arena {
         if labels.get(index) == Some(&label) { Ok(index) } else { Err(index) }
     }
 
+    /// Where labels, increasing, will be in a set when those that it lacks are inserted; how many it lacks.
+    #[inline]
+    pub(super) fn find_all(&self, set: u32, labels: &[u32], indices: &mut [usize]) -> usize {
+        let siblings = self.labels(set);
+        let (mut from, mut missing) = (0, 0);
+        for (index, &label) in indices.iter_mut().zip(labels) {
+            from += siblings[from..].iter().take_while(|&&other| other < label).count();
+            *index = from + missing;
+            missing += usize::from(siblings.get(from) != Some(&label));
+        }
+        missing
+    }
+
+    /// Some function of words of a set: for whoever wants it to be near soon. See `insert_with_faces`.
+    #[inline]
+    pub(super) fn touch(&self, set: u32) -> u32 {
+        // The first word that is not in the header, and one that is most often in the next line.
+        let word = |ahead: usize| self.words.get(set as usize + ahead).copied().unwrap_or(0);
+        word(HEADER) ^ word(HEADER + 16)
+    }
+
     #[inline]
     fn child_at(&self, set: u32, index: usize) -> usize {
         set as usize + HEADER + capacity(self.len(set)) + index
@@ -224,29 +245,68 @@ impl Arena {
         }
     }
 
+    /// The columns of a block: where each starts, in capacities, and how many words of it a sibling has.
+    fn columns(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let (values, slots) = (2 * usize::from(self.filtered), usize::from(self.listed));
+        [(0, 1), (1, 1), (2, values), (2 + values, slots)].into_iter().filter(|&(_, width)| width > 0)
+    }
+
     /// Gives a set another length, more or less; whoever asks for more writes the new siblings at the end, whoever asks
     /// for less has moved those that stay to the front. Returns the handle, which is another if the capacity changes;
     /// then the children have been told, the parent has not.
     pub(super) fn resize(&mut self, set: u32, len: usize) -> Result<u32, SizeError> {
-        let before = self.len(set);
-        let (old, new) = (capacity(before), capacity(len));
+        let kept = self.len(set).min(len);
+        self.rearrange(set, len, [(0, 0, kept), (kept, kept, 0)])
+    }
+
+    /// Makes room for one sibling more before that at `index`; whoever asks writes it. Returns the handle as
+    /// [`resize`](Self::resize) does.
+    #[inline]
+    pub(super) fn open(&mut self, set: u32, index: usize) -> Result<u32, SizeError> {
+        let len = self.len(set);
+        self.rearrange(set, len + 1, [(0, 0, index), (index, index + 1, len - index)])
+    }
+
+    /// Takes one sibling out; the others close up. The set keeps at least one. Returns the handle as
+    /// [`resize`](Self::resize) does.
+    #[inline]
+    pub(super) fn take(&mut self, set: u32, index: usize) -> Result<u32, SizeError> {
+        let len = self.len(set);
+        self.rearrange(set, len - 1, [(0, 0, index), (index + 1, index, len - 1 - index)])
+    }
+
+    /// Gives a set another length and moves two runs of siblings, (from, to, count), the first of which starts the set.
+    fn rearrange(&mut self, set: u32, len: usize, runs: [(usize, usize, usize); 2]) -> Result<u32, SizeError> {
+        let (old, new) = (capacity(self.len(set)), capacity(len));
+        let (parent, label) = self.parent(set);
         if old == new {
             self.words[set as usize + 2] = u32::try_from(len).map_err(|_| SizeError)?;
+            let [_, (from, to, count)] = runs;
+            for (column, width) in self.columns() {
+                let start = set as usize + HEADER + column * old;
+                self.words.copy_within(start + width * from..start + width * (from + count), start + width * to);
+            }
             return Ok(set);
         }
-        let (parent, label) = self.parent(set);
         let moved = self.allocate(parent, label, len)?;
-        let (source, target, kept) = (set as usize + HEADER, moved as usize + HEADER, before.min(len));
-        let columns = [(0, 1), (1, 1), (2, 2), (2 + 2 * usize::from(self.filtered), 1)];
-        let present = [true, true, self.filtered, self.listed];
-        for ((column, width), _) in columns.into_iter().zip(present).filter(|&(_, present)| present) {
-            let start = source + column * old;
-            self.words.copy_within(start..start + width * kept, target + column * new);
+        let columns = self.columns();
+        let block = |set: u32, capacity: usize| set as usize..set as usize + self.words_of(capacity);
+        let blocks = [block(set, old), block(moved, new)];
+        let Ok([source, target]) = self.words.get_disjoint_mut(blocks) else { return Err(SizeError) };
+        for (column, width) in columns {
+            let (source, target) = (&source[HEADER + column * old..], &mut target[HEADER + column * new..]);
+            for (from, to, count) in runs {
+                let source = &source[width * from..width * (from + count)];
+                // Most runs are shorter than a call to copy them takes.
+                target[width * to..].iter_mut().zip(source).for_each(|(target, &word)| *target = word);
+            }
         }
-        for index in 0..kept {
-            let child = self.child(moved, index);
-            if child != NONE {
-                self.set_parent(child, moved);
+        for (_, to, count) in runs {
+            for index in to..to + count {
+                let child = self.child(moved, index);
+                if child != NONE {
+                    self.set_parent(child, moved);
+                }
             }
         }
         self.release(set);
@@ -280,16 +340,6 @@ impl Arena {
                 pending -= 1;
             }
         }
-    }
-
-    /// Takes one sibling out; the others close up. The set keeps at least one. Returns the handle as
-    /// [`resize`](Self::resize) does.
-    pub(super) fn take(&mut self, set: u32, index: usize) -> Result<u32, SizeError> {
-        let len = self.len(set);
-        for from in index + 1..len {
-            self.shift(set, from, from - 1);
-        }
-        self.resize(set, len - 1)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Inserting: a simplex, a simplex with the prefixes of its word, a simplex with all its faces.
 
-use sig_core::Dim;
+use sig_core::{Dim, MAX_DIM};
 
 use super::arena::NONE;
 use super::node::Place;
 use super::{InsertError, SimplexTree, SizeError, check_word};
+use crate::build::narrow;
 
 impl SimplexTree {
     /// Inserts a simplex whose facets are there; whether it is new. If it is there already, it gets the lower one of the
@@ -74,10 +75,10 @@ impl SimplexTree {
             made = found.is_err();
             place = match found {
                 Ok(index) => Place::within(set, index),
-                Err(index) => {
-                    let set = self.insert_children(place, &[*label], value, above + 1)?;
-                    Place::within(set, index)
+                Err(_) if set == NONE => {
+                    Place::within(self.add_set(place, above + 1, std::iter::once((*label, value)))?, 0)
                 }
+                Err(index) => Place::within(self.insert_sibling(place, set, index, (*label, value), above + 1)?, index),
             };
         }
         if !made && value < self.value_at(place) {
@@ -86,36 +87,118 @@ impl SimplexTree {
         Ok(made)
     }
 
+    /// Inserts one label at its index among the children of a node, which have dimension `dim`. Returns the set.
+    fn insert_sibling(
+        &mut self,
+        parent: Place,
+        set: u32,
+        index: usize,
+        (label, value): (u32, f64),
+        dim: Dim,
+    ) -> Result<u32, SizeError> {
+        let moved = self.arena.open(set, index)?;
+        self.arena.write(moved, index, label, value);
+        self.counts[dim] += 1;
+        if moved != set {
+            self.set_child_at(parent, moved);
+            self.list_moved(moved, dim);
+        }
+        self.list_new(moved, dim);
+        Ok(moved)
+    }
+
     /// Inserts a simplex and all its faces; how many of them are new. Those that are there already get the lower one of
     /// the two filtration values, so that values stay monotone.
     ///
     /// Cost: O(2^p `D_m`), the paper's (2.2.1): one merge for each of the 2^p sets of siblings that the faces are in,
-    /// each O(d) if something is new in it.
+    /// each O(d) if something is new in it. 12 bytes for each of the sets of one dimension while it runs.
     ///
     /// # Errors
     /// [`InsertError`]: if the vertices do not increase, or the value is not a number. Nothing is inserted then.
     pub fn insert_with_faces(&mut self, word: &[u32], value: f64) -> Result<usize, InsertError> {
         check(word, value)?;
+        let value = value + 0.0;
         let before = self.num_simplices();
+        let mut nodes = Vec::with_capacity(word.len());
         for (position, &label) in word.iter().enumerate() {
-            self.insert_top(label, value + 0.0, true);
-            self.insert_faces(Place::top(label), &word[position + 1..], value + 0.0, 1)?;
+            self.insert_top(label, value, true);
+            nodes.push((Place::top(label), narrow(position + 1)));
+        }
+        nodes.pop();
+        // By dimension rather than depth-first: then the sets of one dimension are known together, and the processor can
+        // wait for all of them at a time, which in a large tree are nowhere near.
+        let mut next = Vec::new();
+        for dim in 1..word.len() {
+            self.touch_children(&nodes);
+            for &(node, position) in &nodes {
+                self.insert_faces(node, word, position as usize, (value, dim), &mut next)?;
+            }
+            std::mem::swap(&mut nodes, &mut next);
+            next.clear();
         }
         Ok(self.num_simplices() - before)
     }
 
-    /// Inserts all words on the labels below a node.
-    fn insert_faces(&mut self, parent: Place, labels: &[u32], value: f64, dim: Dim) -> Result<(), SizeError> {
-        if labels.is_empty() {
-            return Ok(());
-        }
-        let set = self.insert_children(parent, labels, value, dim)?;
-        let mut index = 0;
-        for (position, label) in labels[..labels.len() - 1].iter().enumerate() {
-            index += self.arena.labels(set)[index..].iter().take_while(|&other| other < label).count();
-            self.insert_faces(Place::within(set, index), &labels[position + 1..], value, dim + 1)?;
-        }
+    /// Reads a word or two of the sets of the children of some nodes, so that they are on their way together.
+    fn touch_children(&self, nodes: &[(Place, u32)]) {
+        let touch = |&(node, _): &(Place, u32)| self.arena.touch(self.child_at(node));
+        std::hint::black_box(nodes.iter().map(touch).fold(0, |all, word| all ^ word));
+    }
+
+    /// Inserts the labels of a word from a position on among the children of a node, and adds those that are to have
+    /// children themselves to the nodes of the next dimension, each with the position after its own.
+    fn insert_faces(
+        &mut self,
+        parent: Place,
+        word: &[u32],
+        position: usize,
+        (value, dim): (f64, Dim),
+        next: &mut Vec<(Place, u32)>,
+    ) -> Result<(), SizeError> {
+        let labels = &word[position..];
+        let mut indices = [0; MAX_DIM + 1];
+        let set = self.child_at(parent);
+        let set = if set == NONE {
+            (0..).zip(&mut indices).for_each(|(position, index)| *index = position);
+            self.add_set(parent, dim, labels.iter().map(|&label| (label, value)))?
+        } else {
+            self.merge_children(parent, set, labels, (value, dim), &mut indices)?
+        };
+        let inner = &indices[..labels.len() - 1];
+        next.extend((position + 1..).zip(inner).map(|(after, &index)| (Place::within(set, index), narrow(after))));
         Ok(())
+    }
+
+    /// Inserts labels, increasing, into the set of the children of a node, which have dimension `dim`; those that are there
+    /// get the lower one of the two values. Tells where they are then, and returns the set.
+    fn merge_children(
+        &mut self,
+        parent: Place,
+        set: u32,
+        labels: &[u32],
+        (value, dim): (f64, Dim),
+        indices: &mut [usize; MAX_DIM + 1],
+    ) -> Result<u32, SizeError> {
+        let missing = self.arena.find_all(set, labels, indices);
+        if missing == 0 {
+            for &index in &indices[..labels.len()] {
+                if value < self.arena.value(set, index) {
+                    self.arena.set_value(set, index, value);
+                }
+            }
+            return Ok(set);
+        }
+        let moved = self.arena.resize(set, self.arena.len(set) + missing)?;
+        if moved != set {
+            self.set_child_at(parent, moved);
+        }
+        self.counts[dim] += missing;
+        self.arena.merge(moved, labels, missing, value);
+        if moved != set {
+            self.list_moved(moved, dim);
+        }
+        self.list_new(moved, dim);
+        Ok(moved)
     }
 
     /// Inserts a vertex, or lowers its value to the given one if it is there; whether it is new.
@@ -127,60 +210,6 @@ impl SimplexTree {
         }
         self.counts[0] += usize::from(made);
         made
-    }
-
-    /// Inserts labels, increasing, among the children of a node, which have dimension `dim`; those that are there get the
-    /// lower one of the two values. Returns the set.
-    pub(super) fn insert_children(
-        &mut self,
-        parent: Place,
-        labels: &[u32],
-        value: f64,
-        dim: Dim,
-    ) -> Result<u32, SizeError> {
-        let set = self.child_at(parent);
-        if set == NONE {
-            return self.add_set(parent, dim, labels.iter().map(|&label| (label, value)));
-        }
-        let missing = labels.len() - self.num_common(set, labels);
-        let mut set = set;
-        if missing > 0 {
-            set = self.resize_set(parent, set, self.arena.len(set) + missing)?;
-            self.counts[dim] += missing;
-        }
-        self.arena.merge(set, labels, missing, value);
-        if missing > 0 {
-            self.list_new(set, dim);
-        }
-        Ok(set)
-    }
-
-    /// How many of the labels, increasing, are in a set.
-    fn num_common(&self, set: u32, labels: &[u32]) -> usize {
-        let siblings = self.arena.labels(set);
-        let [label] = labels else {
-            let mut rest = siblings;
-            return labels
-                .iter()
-                .filter(|&label| {
-                    let skipped = rest.iter().take_while(|&other| other < label).count();
-                    rest = &rest[skipped..];
-                    rest.first() == Some(label)
-                })
-                .count();
-        };
-        usize::from(self.arena.search(set, *label).is_ok())
-    }
-
-    /// Gives the set of the children of a node another length, see [`Arena::resize`](super::arena::Arena::resize).
-    fn resize_set(&mut self, parent: Place, set: u32, len: usize) -> Result<u32, SizeError> {
-        let kept = self.arena.len(set);
-        let moved = self.arena.resize(set, len)?;
-        if moved != set {
-            self.set_child_at(parent, moved);
-            self.list_moved(moved, kept);
-        }
-        Ok(moved)
     }
 }
 

@@ -54,13 +54,15 @@ impl SimplexTree {
         }
     }
 
-    /// Tells the lists where the first `len` siblings of a set are that has moved.
-    pub(super) fn list_moved(&mut self, set: u32, len: usize) {
-        let dim = if self.lists.is_some() { self.dim_of_set(set) } else { return };
+    /// Tells the lists where the siblings of a set of p-simplices are now, all that are in one.
+    pub(super) fn list_moved(&mut self, set: u32, dim: Dim) {
         let Some(lists) = &mut self.lists else { return };
-        for (index, &label) in self.arena.labels(set)[..len].iter().enumerate() {
-            let slot = self.arena.slot(set, index) as usize;
-            if let Some(entry) = lists.sets.get_mut(&key(label, dim)).and_then(|list| list.get_mut(slot)) {
+        for (index, &label) in self.arena.labels(set).iter().enumerate() {
+            let slot = self.arena.slot(set, index);
+            if slot == UNLISTED {
+                continue;
+            }
+            if let Some(entry) = lists.sets.get_mut(&key(label, dim)).and_then(|list| list.get_mut(slot as usize)) {
                 *entry = set;
             }
         }

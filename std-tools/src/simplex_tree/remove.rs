@@ -57,8 +57,7 @@ impl SimplexTree {
         }
         self.unlist(set, index as usize, dim);
         let parent = self.parent_of_set(set);
-        let len = self.arena.len(set);
-        if len == 1 {
+        if self.arena.len(set) == 1 {
             self.set_child_at(parent, NONE);
             self.arena.release(set);
             return Ok(());
@@ -66,7 +65,7 @@ impl SimplexTree {
         let moved = self.arena.take(set, index as usize)?;
         if moved != set {
             self.set_child_at(parent, moved);
-            self.list_moved(moved, len - 1);
+            self.list_moved(moved, dim);
         }
         Ok(())
     }
