@@ -63,6 +63,18 @@ impl fmt::Display for ScratchError {
 
 impl core::error::Error for ScratchError {}
 
+impl ScratchError {
+    /// The error of a queue of its own behind some entries of the queue.
+    pub(crate) const fn behind(self, entries: usize) -> Self {
+        match self {
+            Self::Queue { at_least, available } => {
+                Self::Queue { at_least: at_least.saturating_add(entries), available: available.saturating_add(entries) }
+            }
+            other => other,
+        }
+    }
+}
+
 /// Memory for one query at a time, borrowed from the caller.
 ///
 /// # Capacity
@@ -70,7 +82,7 @@ impl core::error::Error for ScratchError {}
 /// | part | enough for |
 /// |---|---|
 /// | `marks` | [`mark_words`]`(n)` words, n the number of simplices: for every query |
-/// | `queue`, `masks` | on a [`Complex`](crate::Complex) the largest cluster of a co-boundary or cluster query, the whole star for a star query; on a [`Tree`](crate::Tree) the neighbours of a vertex |
+/// | `queue`, `masks` | on a [`Complex`](crate::Complex) the largest cluster of a co-boundary or cluster query, the whole star for a star query; on a [`Tree`](crate::Tree) the neighbours of a vertex, and the simplices of two dimensions whose words begin cofaces: never more than vertices and simplices together |
 /// | `found` | the answer of any query, on a complex but star and cluster; for adjacency, repetitions and σ too |
 ///
 /// A traversal clears its marks before it hands out the first item, walking what it marked: breaking out of a loop over
@@ -220,6 +232,23 @@ impl<I: Index> Queue<'_, I> {
         self.len = 0;
     }
 
+    /// What is queued, and the room behind it as a queue of its own.
+    pub(crate) fn split(&mut self) -> (Queue<'_, I>, Queue<'_, I>) {
+        let len = self.len.min(self.ids.len()).min(self.masks.len());
+        let (ids, more_ids) = self.ids.split_at_mut(len);
+        let (masks, more_masks) = self.masks.split_at_mut(len);
+        (Queue { ids, masks, len }, Queue { ids: more_ids, masks: more_masks, len: 0 })
+    }
+
+    /// Takes out the first entries; those behind them move up.
+    pub(crate) fn remove_first(&mut self, count: usize) {
+        if count <= self.len && self.len <= self.ids.len().min(self.masks.len()) {
+            self.ids.copy_within(count..self.len, 0);
+            self.masks.copy_within(count..self.len, 0);
+            self.len -= count;
+        }
+    }
+
     pub(crate) fn ids(&self) -> &[I] {
         self.ids.get(..self.len).unwrap_or(&[])
     }
@@ -260,6 +289,10 @@ impl<I: Index> Found<'_, I> {
 
     pub(crate) fn ids(&self) -> &[I] {
         self.ids.get(..self.len).unwrap_or(&[])
+    }
+
+    pub(crate) fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
     }
 
     /// The answer, to be rewritten in place.

@@ -29,7 +29,7 @@ impl<I: Index> Memory<I> {
     #[must_use]
     pub fn roomy(num_simplices: usize) -> Self {
         // k-adjacency gathers the cofaces of each k-face before it drops repetitions; a 6-simplex has 35 of one k.
-        Self::new(mark_words(num_simplices), num_simplices, 35 * num_simplices)
+        Self::new(mark_words(num_simplices), 2 * num_simplices, 35 * num_simplices)
     }
 
     /// The scratch to query with.

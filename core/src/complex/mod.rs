@@ -56,6 +56,13 @@ impl<'a, I: Index> Complex<'a, I> {
         self.tree.as_ref()
     }
 
+    /// The tree, if it finds the cofaces of a simplex faster than its clusters do: when it knows lower neighbours, and the
+    /// simplex is not so large that it has but a few top simplices, which the clusters name at once.
+    pub(crate) fn upward_tree(&self, simplex: SimplexId) -> Option<&Tree<'a, I>> {
+        let few = self.levels.start(self.levels.dims().saturating_sub(4));
+        self.as_tree().filter(|tree| tree.has_lower_neighbours() && simplex.index() < few)
+    }
+
     pub(crate) const fn levels(&self) -> &Levels {
         &self.levels
     }

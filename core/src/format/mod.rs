@@ -20,6 +20,7 @@ pub use container::{Container, Sections};
 pub use encode::{EncodeError, Encoder};
 pub use error::{FormatError, Rule, TableError};
 pub use header::{Header, Kind};
+pub(crate) use section::first_from;
 pub use section::{Column, Section, SectionKind};
 pub use wire::swap_byte_order;
 

@@ -238,9 +238,12 @@ impl<'a> Column<'a> {
     /// The row in `range`, whose integers increase, that holds `value`.
     #[inline]
     pub(crate) fn find(&self, range: Range<usize>, value: usize) -> Option<usize> {
-        let end = range.end;
-        let row = self.lower_bound(range, value);
-        (row < end && self.index_at(row) == Some(value)).then_some(row)
+        match self {
+            Self::U16(column) => find_in(column, range, value),
+            Self::U32(column) => find_in(column, range, value),
+            Self::U64(column) => find_in(column, range, value),
+            _ => None,
+        }
     }
 
     pub(crate) const fn element_code(&self) -> u8 {
@@ -272,11 +275,47 @@ impl<'a> Column<'a> {
     }
 }
 
+/// Up to how many indices are searched from the start. A processor guesses where such a search ends and goes on, while it
+/// waits for the indices; halving takes the guess from it, for there each step needs the one before.
+const SHORT: usize = 16;
+
 /// How many of the indices in a range, which increase, are less than a value.
 #[inline]
 fn num_below<I: Index>(column: &[I], range: &Range<usize>, value: usize) -> usize {
     let indices = column.get(range.clone()).unwrap_or(&[]);
     indices.partition_point(|index| index.to_usize() < value)
+}
+
+/// The first place from `start` on in indices that increase that holds `value` or more; the end if none does. Cost: the
+/// logarithm of how far it is.
+#[inline]
+pub(crate) fn first_from<I: Index>(indices: &[I], start: usize, value: usize) -> usize {
+    let is_before = |index: &I| index.to_usize() < value;
+    let (mut low, mut step) = (start, 1);
+    while indices.get(low).is_some_and(is_before) {
+        let high = low.saturating_add(step);
+        match indices.get(high) {
+            Some(index) if is_before(index) => (low, step) = (high, step * 2),
+            _ => {
+                let high = high.min(indices.len());
+                let between = indices.get(low..high).unwrap_or(&[]);
+                return low + between.partition_point(is_before);
+            }
+        }
+    }
+    low.min(indices.len()).max(start)
+}
+
+/// The row in a range, whose indices increase, that holds a value.
+#[inline]
+fn find_in<I: Index>(column: &[I], range: Range<usize>, value: usize) -> Option<usize> {
+    let (start, indices) = (range.start, column.get(range)?);
+    let place = if indices.len() <= SHORT {
+        indices.iter().position(|index| index.to_usize() >= value)?
+    } else {
+        indices.partition_point(|index| index.to_usize() < value)
+    };
+    (indices.get(place)?.to_usize() == value).then_some(start + place)
 }
 
 /// Bytes of an element of type `code`; `None` for bits and for unknown codes.

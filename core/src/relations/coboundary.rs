@@ -12,7 +12,8 @@ impl<I: Index> Complex<'_, I> {
     /// C_{p,g}(σ): the g-simplices in the restricted star of a p-simplex, g > p; empty for g ≤ p or g > d.
     ///
     /// Cost: O(Σ_{g≤r≤d} λ_r(σ)), with a factor that depends on p, g and r only: (r−p over g−p) faces for a top
-    /// r-simplex. For g = d it is linear in the answer. Source: Algorithms 5 and 6.
+    /// r-simplex. For g = d it is linear in the answer. Source: Algorithms 5 and 6. By way of the tree where
+    /// [`star`](Self::star) goes that way.
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.
@@ -23,6 +24,9 @@ impl<I: Index> Complex<'_, I> {
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
         scratch.start(self.num_simplices())?;
+        if let Some(tree) = self.upward_tree(simplex) {
+            return tree.coboundary(simplex, dim, scratch);
+        }
         let gathered = self.gather_cofaces(simplex, dim, scratch);
         scratch.unmark_found(0);
         gathered?;

@@ -9,7 +9,9 @@ impl<I: Index> Complex<'_, I> {
     /// ⋆σ: the simplex and all simplices that have it as a face. A top simplex is its own star.
     ///
     /// Cost: O(Σ_r λ_r(σ)) for the top simplices, and for each simplex of the star as many reads as it has vertices
-    /// outside σ. The queue of the scratch holds the answer. Source: sig-2004, 2 and 6.2.
+    /// outside σ. The queue of the scratch holds the answer. Source: sig-2004, 2 and 6.2. Where the file has the tree's
+    /// sections and lower neighbours, and σ has at least four vertices less than a largest simplex, the tree answers:
+    /// see [`Tree::star`](crate::Tree::star).
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.
@@ -42,6 +44,9 @@ impl<I: Index> Complex<'_, I> {
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
         scratch.start(self.num_simplices())?;
+        if let Some(tree) = self.upward_tree(simplex) {
+            return if itself { tree.star(simplex, scratch) } else { tree.restricted_star(simplex, scratch) };
+        }
         let own = self.dim_of(simplex).zip(I::from_usize(simplex.index()));
         let gathered = match own {
             Some((dim, id)) => self.queue_star(simplex, dim, id, itself, scratch),

@@ -1,51 +1,95 @@
 //! The cofaces of a simplex (simplex-tree-2012, 2.2.1): the words \[⋆ℓ₀⋆ℓ₁⋆…⋆ℓⱼ⋆\].
 //!
 //! Every vertex of a coface that sorts before ℓⱼ is a neighbour of all ℓᵢ, so the words \[⋆ℓ₀⋆…⋆ℓⱼ\] are made of σ and
-//! sets of common neighbours. The sets are enumerated by increasing vertex, each from the one without its greatest
-//! vertex: if that with σ is no simplex, nothing that contains it is. So no search fails but the first of each kind, and
-//! the paper's walks up from all nodes with the label ℓⱼ are not needed. What lies below such a word is all coface, and
-//! consecutive in each dimension.
+//! common neighbours. The tree is descended breadth first by such words only; what lies below one that has all of σ is
+//! all coface, and consecutive in each dimension. In a flag complex every word on the way leads to a coface, so the
+//! paper's walks up from all nodes with the label ℓⱼ are not needed.
+//!
+//! Breadth first, because the nodes of one dimension do not wait for each other: what is read for all of them is asked of
+//! the memory at once, and a query waits for it once a dimension instead of once a node. It also gives the cofaces in the
+//! order of their ids.
 
 use core::ops::Range;
 
-use heapless::Vec;
-
 use super::{Path, Tree};
-use crate::format::Column;
-use crate::id::{Dim, Index, MAX_DIM, SimplexId};
+use crate::format::{Column, first_from};
+use crate::id::{Dim, Index, SimplexId};
 use crate::relations::Simplices;
-use crate::scratch::{Queue, Scratch, ScratchError};
+use crate::scratch::{Found, Queue, Scratch, ScratchError};
 
-/// A word \[⋆ℓ₀⋆…⋆ℓⱼ\]: all that is below it, and nothing else, are cofaces of \[ℓ₀…ℓⱼ\].
-pub(super) struct Root<'r> {
-    /// The node.
-    pub(super) node: usize,
-    /// Its vertices that are not σ's, increasing.
-    pub(super) extra: &'r [usize],
+/// A node on the way to cofaces, or consecutive ones that are cofaces.
+#[derive(Clone, Copy)]
+struct Pending {
+    node: usize,
+    /// How many vertices of σ the word has; not more than there are bits in a mask.
+    own: u32,
+    /// If it has not all: the first common neighbour that may come next, or one before it. Else: how many nodes there are.
+    rest: usize,
 }
 
-/// The greatest number of nodes that a traversal has on its stack: a set of k vertices, k ≤ d − j, has a node for each
-/// place between the vertices of σ, and one behind them; (j + 2) · (d − j + 1) is greatest for j = d/2.
-const STACK: usize = 17 * 17;
+impl Pending {
+    /// The bits that hold how many vertices of σ a word has: up to 32.
+    const OWN_BITS: u32 = 6;
+    /// What [`rest`](Self::rest) can be in a queue.
+    const MOST: usize = (u32::MAX >> Self::OWN_BITS) as usize;
 
-/// A set of common neighbours.
-struct Set {
-    /// Where on the stack its nodes start: that of itself and the vertices of σ before its greatest vertex, then with one
-    /// more vertex of σ after the other, up to the root that it is in.
-    start: usize,
-    /// How many vertices of σ the first of these nodes has.
-    before: usize,
-    /// The next common neighbour to add, all of the set coming before it.
-    next: usize,
+    const fn new(node: usize, own: u32, rest: usize) -> Self {
+        Self { node, own, rest }
+    }
+
+    #[inline]
+    fn unpack<I: Index>((node, mask): (I, u32)) -> Self {
+        let own = mask & ((1 << Self::OWN_BITS) - 1);
+        Self { node: node.to_usize(), own, rest: (mask >> Self::OWN_BITS) as usize }
+    }
+
+    /// Queues it; more nodes than a mask can count as several.
+    #[inline]
+    fn push<I: Index>(mut self, size: usize, queue: &mut Queue<'_, I>) -> Result<(), ScratchError> {
+        loop {
+            let part = self.rest.min(Self::MOST);
+            let mask = u32::try_from(part).unwrap_or(0) << Self::OWN_BITS | self.own;
+            queue.push(I::from_usize(self.node).unwrap_or(I::STOP), mask)?;
+            if self.own as usize != size || self.rest == part {
+                return Ok(());
+            }
+            self.node += part;
+            self.rest -= part;
+        }
+    }
+}
+
+/// What is looked for: cofaces of σ of some dimensions.
+struct Wanted<'p> {
+    /// σ.
+    path: &'p Path,
+    /// The least dimension that is wanted.
+    from: Dim,
+    /// The greatest.
+    to: Dim,
+}
+
+impl Wanted<'_> {
+    #[inline]
+    fn size(&self) -> usize {
+        self.path.len()
+    }
+
+    /// Whether a word of dimension `dim` may get one more vertex that is not σ's and still become a coface.
+    #[inline]
+    fn has_room(&self, dim: Dim, own: u32) -> bool {
+        dim + 1 + self.size() <= self.to + own as usize
+    }
 }
 
 impl<I: Index> Tree<'_, I> {
-    /// ⋆σ: the simplex and all simplices that have it as a face.
+    /// ⋆σ: the simplex and all simplices that have it as a face, in the order of their ids.
     ///
     /// Cost: [`vertices`](Self::vertices); the common neighbours of the vertices, each list searched for those of the
-    /// shortest; then p + 2 searches among children for each word \[⋆ℓ₀⋆…⋆ℓⱼ\], and a sequential write of what is below.
-    /// The queue of the scratch holds the common neighbours, no marks are needed. Without the file's lower neighbours
-    /// those are looked for among all vertices before σ's first one.
+    /// shortest; then a pass over the children of each simplex whose word is made of common neighbours and the first
+    /// vertices of σ (in a flag complex each is a prefix of a coface), and a sequential write of what is below. The
+    /// queue of the scratch holds the common neighbours and such simplices of two dimensions; no marks are needed.
+    /// Without the file's lower neighbours the common ones are looked for among all vertices before σ's first one.
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.
@@ -54,7 +98,7 @@ impl<I: Index> Tree<'_, I> {
         simplex: SimplexId,
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
-        self.gather_star(simplex, true, scratch)
+        self.gather_star(simplex, 0, scratch)
     }
 
     /// st(σ) = ⋆σ − {σ}: all simplices that have the simplex as a proper face. Cost: as [`star`](Self::star).
@@ -66,7 +110,7 @@ impl<I: Index> Tree<'_, I> {
         simplex: SimplexId,
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
-        self.gather_star(simplex, false, scratch)
+        self.gather_star(simplex, 1, scratch)
     }
 
     /// C_{p,g}(σ): the g-simplices in the restricted star of a p-simplex, g > p; empty for g ≤ p or g > d.
@@ -114,35 +158,18 @@ impl<I: Index> Tree<'_, I> {
         word.zip(before..).try_fold(prefix, |node, (label, depth)| self.child(depth, node, label)).is_some()
     }
 
+    /// The cofaces of all dimensions from that of the simplex and `more` on.
     fn gather_star<'s>(
         &self,
         simplex: SimplexId,
-        itself: bool,
+        more: Dim,
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
         scratch.start(0)?;
-        let path = self.path(simplex);
-        let Scratch { queue, found, .. } = scratch;
-        self.common_neighbours(&path, queue)?;
-        let mut skip_first = !itself;
-        self.roots(&path, usize::MAX, queue, |root| {
-            let mut dim = path.len() + root.extra.len() - 1;
-            let mut level = root.node..root.node + 1;
-            if core::mem::take(&mut skip_first) {
-                (level, dim) = (self.children_of(dim, level), dim + 1);
-            }
-            while !level.is_empty() {
-                // In a buffer that is not a tree subtrees may overlap.
-                if found.len() + level.len() > self.num_simplices() {
-                    return Ok(false);
-                }
-                found.extend(level.clone())?;
-                level = self.children_of(dim, level);
-                dim += 1;
-            }
-            Ok(true)
-        })?;
-        Ok(Simplices::new(found.ids()))
+        if let (Some(dim), Some(to)) = (self.dim_of(simplex), self.levels.dims().checked_sub(1)) {
+            self.gather(simplex, dim + more..to + 1, scratch)?;
+        }
+        Ok(Simplices::new(scratch.found.ids()))
     }
 
     /// Appends the cofaces of dimension `dim` to the answer.
@@ -155,167 +182,146 @@ impl<I: Index> Tree<'_, I> {
         if dim >= self.levels.dims() || self.dim_of(simplex).is_none_or(|own| own >= dim) {
             return Ok(());
         }
-        let path = self.path(simplex);
-        let more = (dim + 1).saturating_sub(path.len());
+        self.gather(simplex, dim..dim + 1, scratch)
+    }
+
+    /// Appends the cofaces of some dimensions to the answer, in the order of their ids.
+    fn gather(&self, simplex: SimplexId, dims: Range<Dim>, scratch: &mut Scratch<'_, I>) -> Result<(), ScratchError> {
         let Scratch { queue, found, .. } = scratch;
+        if self.levels.ids(self.levels.dims().saturating_sub(1)).contains(&simplex.index()) {
+            // It is its own only coface.
+            return if dims.is_empty() { Ok(()) } else { found.extend(simplex.index()..simplex.index() + 1) };
+        }
+        let path = self.path(simplex);
         queue.clear();
         self.common_neighbours(&path, queue)?;
-        let most = found.len() + self.num_simplices();
-        self.roots(&path, more, queue, |root| {
-            let own = path.len() + root.extra.len() - 1;
-            let level = (own..dim).fold(root.node..root.node + 1, |level, dim| self.children_of(dim, level));
-            if found.len() + level.len() > most {
-                return Ok(false);
-            }
-            found.extend(level)?;
-            Ok(true)
-        })
-    }
-
-    /// Hands each root with at most `max_extra` vertices beside σ's to `visit`, σ itself first, until it says no. The queue
-    /// holds the common neighbours.
-    ///
-    /// On a buffer that is not a tree it ends too, after as many roots as there are simplices.
-    pub(super) fn roots(
-        &self,
-        path: &Path,
-        max_extra: usize,
-        common: &Queue<'_, I>,
-        mut visit: impl FnMut(Root<'_>) -> Result<bool, ScratchError>,
-    ) -> Result<(), ScratchError> {
-        let Some(own) = path.last() else { return Ok(()) };
-        let mut go_on = visit(Root { node: own.id, extra: &[] })?;
-        let max_extra = max_extra.min(self.levels.dims().saturating_sub(path.len()));
-        let mut extra: Vec<usize, { MAX_DIM + 1 }> = Vec::new();
-        let mut sets: Vec<Set, { MAX_DIM + 1 }> = Vec::new();
-        let mut stack: Vec<usize, STACK> = Vec::new();
-        // The empty set: the root of the tree, then σ's own path.
-        let _ = stack.push(0);
-        let _ = path.iter().try_for_each(|node| stack.push(node.id));
-        let _ = sets.push(Set { start: 0, before: 0, next: 0 });
-        let mut left = self.num_simplices();
-        while let (true, Some(set)) = (go_on, sets.last_mut()) {
-            let Some((vertex, before)) = common.get(set.next).filter(|_| extra.len() < max_extra) else {
-                stack.truncate(set.start);
-                sets.pop();
-                extra.pop();
-                continue;
-            };
-            set.next += 1;
-            let (vertex, before) = (vertex.to_usize(), before as usize);
-            let Some(&node) = before.checked_sub(set.before).and_then(|place| stack.get(set.start + place)) else {
-                continue;
-            };
-            let next = set.next;
-            let start = stack.len();
-            let Some(root) = self.descend(path, before, before + extra.len(), node, vertex, &mut stack) else {
-                stack.truncate(start);
-                continue;
-            };
-            // Never full, for a root is at most as deep as the tree.
-            let pushed = extra.push(vertex).is_ok() && sets.push(Set { start, before, next }).is_ok();
-            left = left.saturating_sub(1);
-            go_on = pushed && left > 0 && visit(Root { node: root, extra: &extra })?;
-        }
-        Ok(())
-    }
-
-    /// From a node of `depth` vertices, `before` of them σ's, to the child that ends with `vertex` and on by the rest of
-    /// σ: pushes all these nodes.
-    #[inline]
-    fn descend(
-        &self,
-        path: &Path,
-        before: usize,
-        depth: usize,
-        node: usize,
-        vertex: usize,
-        stack: &mut Vec<usize, STACK>,
-    ) -> Option<usize> {
-        let mut node = self.child(depth, node, vertex)?;
-        stack.push(node).ok()?;
-        for (depth, next) in (depth + 1..).zip(path.get(before..)?) {
-            node = self.child(depth, node, next.label)?;
-            stack.push(node).ok()?;
-        }
-        Some(node)
-    }
-
-    /// Queues the vertices before σ's last one that are neighbours of all of σ's vertices, increasing, each with the number
-    /// of σ's vertices before it in place of the mask.
-    pub(super) fn common_neighbours(&self, path: &Path, queue: &mut Queue<'_, I>) -> Result<(), ScratchError> {
-        let rarest = self.rarest(path);
-        self.neighbours(path, rarest, |vertex, before| {
-            I::from_usize(vertex).map_or(Ok(()), |vertex| queue.push(vertex, before))
-        })?;
-        for node in path.iter().enumerate().filter_map(|(place, node)| (place != rarest).then_some(node)) {
-            if queue.len() == 0 {
-                break;
-            }
-            let vertex = node.label;
-            let (mut lower, mut upper) = (self.lower_rows(vertex), self.child_range(0, vertex));
-            queue.retain(|other, before| {
-                if other > vertex {
-                    return advance(&self.last_vertices, &mut upper, other).then_some(before + 1);
-                }
-                let adjacent = match (&self.lower, &mut lower) {
-                    (Some(lower), Some(rows)) => advance(&lower.vertices, rows, other),
-                    _ => self.child(1, other, vertex).is_some(),
-                };
-                adjacent.then_some(before)
-            });
-        }
-        Ok(())
-    }
-
-    /// The place in the word of the vertex that has the fewest neighbours, as far as they have to be looked through.
-    fn rarest(&self, path: &Path) -> usize {
-        let degree = |vertex: usize| {
-            let lower = self.lower_rows(vertex).map_or(vertex, |rows| rows.len());
-            lower.saturating_add(self.child_range(0, vertex).len())
+        let wanted = Wanted { path: &path, from: dims.start, to: dims.end.saturating_sub(1) };
+        let num_common = queue.len();
+        let (common, mut level) = queue.split();
+        let gathered = match self.last_vertices {
+            Column::U16(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
+            Column::U32(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
+            Column::U64(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
+            _ => Ok(()),
         };
-        let degrees = path.iter().enumerate().map(|(place, node)| (degree(node.label), place));
-        degrees.min().map_or(0, |(_, place)| place)
+        gathered.map_err(|error| error.behind(num_common))
     }
 
-    /// Hands the neighbours of one of σ's vertices that come before σ's last vertex to `each`, increasing, with 0 before
-    /// that vertex and 1 after it.
-    pub(super) fn neighbours<E>(
+    /// Appends the cofaces that are made of σ's vertices and common neighbours, level by level.
+    fn gather_words<L: Index>(
         &self,
-        path: &Path,
-        place: usize,
-        mut each: impl FnMut(usize, u32) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let (Some(vertex), Some(last)) = (path.get(place), path.last()) else { return Ok(()) };
-        match (&self.lower, self.lower_rows(vertex.label)) {
-            (Some(lower), Some(mut rows)) => {
-                rows.try_for_each(|row| lower.vertices.index_at(row).map_or(Ok(()), |other| each(other, 0)))?;
+        wanted: &Wanted<'_>,
+        labels: &[L],
+        common: &Queue<'_, I>,
+        level: &mut Queue<'_, I>,
+        found: &mut Found<'_, I>,
+    ) -> Result<(), ScratchError> {
+        let first = self.push_first(wanted, common, level)?;
+        // In a tree all that is queued is different simplices. On a buffer that is not a tree it ends too, after as many.
+        let (mut queued, most) = (level.len(), found.len() + self.num_simplices());
+        for dim in first..=wanted.to {
+            let (count, below) = (level.len(), self.levels.ids(dim + 1));
+            self.fetch_children(wanted, labels, &below, level);
+            for place in 0..count {
+                let Some(pending) = level.get(place).map(Pending::unpack) else { break };
+                let before = level.len();
+                if pending.own as usize == wanted.size() {
+                    let cofaces = pending.node..pending.node.saturating_add(pending.rest).min(self.num_simplices());
+                    if dim >= wanted.from {
+                        found.extend(cofaces.clone())?;
+                    }
+                    let children = self.children_in(&below, cofaces);
+                    if dim < wanted.to && !children.is_empty() {
+                        Pending::new(children.start, pending.own, children.len()).push(wanted.size(), level)?;
+                    }
+                } else {
+                    let children = self.children_in(&below, pending.node..pending.node.saturating_add(1));
+                    let may_add = wanted.has_room(dim, pending.own);
+                    next_words(wanted.path, labels, children, (pending, may_add), common, level)?;
+                }
+                queued += level.len() - before;
+                if queued > self.num_simplices() || found.len() > most {
+                    found.truncate(most);
+                    return Ok(());
+                }
             }
-            _ => {
-                let is_lower = |&other: &usize| self.child(1, other, vertex.label).is_some();
-                (0..vertex.label.min(self.num_vertices())).filter(is_lower).try_for_each(|other| each(other, 0))?;
+            level.remove_first(count);
+        }
+        Ok(())
+    }
+
+    /// Queues the words that cofaces begin with, of one dimension, and gives it: up to where the first common neighbour
+    /// may stand there is only σ's own; before σ's first vertex, each common neighbour and that vertex.
+    fn push_first(
+        &self,
+        wanted: &Wanted<'_>,
+        common: &Queue<'_, I>,
+        level: &mut Queue<'_, I>,
+    ) -> Result<Dim, ScratchError> {
+        let common = |place| common.get(place).filter(|_| wanted.has_room(0, 1));
+        let own = common(0).map_or(wanted.size(), |(_, before)| before as usize).clamp(1, wanted.size().max(1));
+        let mut next = 0;
+        while let Some((vertex, 0)) = common(next) {
+            next += 1;
+            Pending::new(vertex.to_usize(), 0, next).push(wanted.size(), level)?;
+        }
+        if let Some(node) = wanted.path.get(own - 1) {
+            let rest = if own == wanted.size() { 1 } else { next };
+            Pending::new(node.id, u32::try_from(own).unwrap_or(0), rest).push(wanted.size(), level)?;
+        }
+        Ok(own - 1)
+    }
+
+    /// Reads the first of what will be read of the children of all nodes of a level, none waiting for another.
+    fn fetch_children<L: Index>(&self, wanted: &Wanted<'_>, labels: &[L], below: &Range<usize>, level: &Queue<'_, I>) {
+        for pending in (0..level.len()).filter_map(|place| level.get(place)).map(Pending::unpack) {
+            let is_coface = pending.own as usize == wanted.size();
+            let nodes = if is_coface { pending.rest } else { 1 };
+            let children = self.children_in(below, pending.node..pending.node.saturating_add(nodes));
+            self.fetch_offset(children.start);
+            if is_coface {
+                self.fetch_offset(children.end);
+            } else {
+                core::hint::black_box(labels.get(children.start).copied());
             }
         }
-        let upper = self.child_range(0, vertex.label).map_while(|edge| self.last_vertices.index_at(edge));
-        upper.take_while(|&other| other < last.label).try_for_each(|other| each(other, 1))
-    }
-
-    /// Where the lower neighbours of a vertex stand, if the file has them; nothing past the end.
-    #[inline]
-    pub(super) fn lower_rows(&self, vertex: usize) -> Option<Range<usize>> {
-        let lower = self.lower.as_ref()?;
-        let len = lower.vertices.len();
-        let bound = |vertex: usize| lower.offsets.get(vertex).map_or(len, |offset| offset.to_usize());
-        // Clamped, for in a buffer that is not a tree an offset may be anything.
-        let start = bound(vertex).min(len);
-        Some(start..bound(vertex.saturating_add(1)).clamp(start, len))
     }
 }
 
-/// Moves the start of `rows`, in which `column` increases, to the first that holds `value` or more; whether it holds
-/// `value`.
+/// Queues the children of a node that end with a common neighbour before the next vertex of σ, if there may be more of
+/// those, or with that vertex.
 #[inline]
-fn advance(column: &Column<'_>, rows: &mut Range<usize>, value: usize) -> bool {
-    rows.start = column.lower_bound(rows.clone(), value);
-    rows.start < rows.end && column.index_at(rows.start) == Some(value)
+fn next_words<I: Index, L: Index>(
+    path: &Path,
+    labels: &[L],
+    children: Range<usize>,
+    (from, may_add): (Pending, bool),
+    common: &Queue<'_, I>,
+    level: &mut Queue<'_, I>,
+) -> Result<(), ScratchError> {
+    let (Some(own), Some(labels)) = (path.get(from.own as usize), labels.get(children.clone())) else { return Ok(()) };
+    let common = common.ids();
+    let (mut next, mut child) = (from.rest, 0);
+    while let (Some(label), Some(vertex), true) = (labels.get(child), common.get(next), may_add) {
+        let (label, vertex) = (label.to_usize(), vertex.to_usize());
+        if label >= own.label || vertex >= own.label {
+            break;
+        }
+        if vertex < label {
+            next = first_from(common, next + 1, label);
+        } else if vertex > label {
+            child = first_from(labels, child + 1, vertex);
+        } else {
+            next += 1;
+            Pending::new(children.start + child, from.own, next).push(path.len(), level)?;
+            child += 1;
+        }
+    }
+    child = first_from(labels, child, own.label);
+    if labels.get(child).is_some_and(|label| label.to_usize() == own.label) {
+        let is_coface = from.own as usize + 1 == path.len();
+        let rest = if is_coface { 1 } else { next };
+        Pending::new(children.start + child, from.own + 1, rest).push(path.len(), level)?;
+    }
+    Ok(())
 }

@@ -4,11 +4,33 @@ use core::ops::Range;
 
 use heapless::Vec;
 
-use super::Tree;
-use super::cofaces::Root;
+use super::{Path, Tree};
 use crate::id::{Dim, Index, MAX_DIM, SimplexId, VertexId};
 use crate::relations::Simplices;
-use crate::scratch::{Found, Scratch, ScratchError};
+use crate::scratch::{Found, Queue, Scratch, ScratchError};
+
+/// A word \[⋆ℓ₀⋆…⋆ℓⱼ\]: all that is below it, and nothing else, are cofaces of \[ℓ₀…ℓⱼ\].
+struct Root<'r> {
+    /// The node.
+    node: usize,
+    /// Its vertices that are not σ's, increasing.
+    extra: &'r [usize],
+}
+
+/// The greatest number of nodes that a traversal has on its stack: a set of k vertices, k ≤ d − j, has a node for each
+/// place between the vertices of σ, and one behind them; (j + 2) · (d − j + 1) is greatest for j = d/2.
+const STACK: usize = 17 * 17;
+
+/// A set of common neighbours.
+struct Set {
+    /// Where on the stack its nodes start: that of itself and the vertices of σ before its greatest vertex, then with one
+    /// more vertex of σ after the other, up to the root that it is in.
+    start: usize,
+    /// How many vertices of σ the first of these nodes has.
+    before: usize,
+    /// The next common neighbour to add, all of the set coming before it.
+    next: usize,
+}
 
 /// The children of a coface that are still to be visited, and those of the simplex of the link under it.
 struct Pair {
@@ -41,6 +63,75 @@ impl<I: Index> Tree<'_, I> {
             self.report_below(path.len(), &root, mate, found)
         })?;
         Ok(Simplices::new(found.ids()))
+    }
+
+    /// Hands each root with at most `max_extra` vertices beside σ's to `visit`, σ itself first, until it says no. The queue
+    /// holds the common neighbours.
+    ///
+    /// On a buffer that is not a tree it ends too, after as many roots as there are simplices.
+    fn roots(
+        &self,
+        path: &Path,
+        max_extra: usize,
+        common: &Queue<'_, I>,
+        mut visit: impl FnMut(Root<'_>) -> Result<bool, ScratchError>,
+    ) -> Result<(), ScratchError> {
+        let Some(own) = path.last() else { return Ok(()) };
+        let mut go_on = visit(Root { node: own.id, extra: &[] })?;
+        let max_extra = max_extra.min(self.levels.dims().saturating_sub(path.len()));
+        let mut extra: Vec<usize, { MAX_DIM + 1 }> = Vec::new();
+        let mut sets: Vec<Set, { MAX_DIM + 1 }> = Vec::new();
+        let mut stack: Vec<usize, STACK> = Vec::new();
+        // The empty set: the root of the tree, then σ's own path.
+        let _ = stack.push(0);
+        let _ = path.iter().try_for_each(|node| stack.push(node.id));
+        let _ = sets.push(Set { start: 0, before: 0, next: 0 });
+        let mut left = self.num_simplices();
+        while let (true, Some(set)) = (go_on, sets.last_mut()) {
+            let Some((vertex, before)) = common.get(set.next).filter(|_| extra.len() < max_extra) else {
+                stack.truncate(set.start);
+                sets.pop();
+                extra.pop();
+                continue;
+            };
+            set.next += 1;
+            let (vertex, before) = (vertex.to_usize(), before as usize);
+            let Some(&node) = before.checked_sub(set.before).and_then(|place| stack.get(set.start + place)) else {
+                continue;
+            };
+            let next = set.next;
+            let start = stack.len();
+            let Some(root) = self.descend(path, before, before + extra.len(), node, vertex, &mut stack) else {
+                stack.truncate(start);
+                continue;
+            };
+            // Never full, for a root is at most as deep as the tree.
+            let pushed = extra.push(vertex).is_ok() && sets.push(Set { start, before, next }).is_ok();
+            left = left.saturating_sub(1);
+            go_on = pushed && left > 0 && visit(Root { node: root, extra: &extra })?;
+        }
+        Ok(())
+    }
+
+    /// From a node of `depth` vertices, `before` of them σ's, to the child that ends with `vertex` and on by the rest of
+    /// σ: pushes all these nodes.
+    #[inline]
+    fn descend(
+        &self,
+        path: &Path,
+        before: usize,
+        depth: usize,
+        node: usize,
+        vertex: usize,
+        stack: &mut Vec<usize, STACK>,
+    ) -> Option<usize> {
+        let mut node = self.child(depth, node, vertex)?;
+        stack.push(node).ok()?;
+        for (depth, next) in (depth + 1..).zip(path.get(before..)?) {
+            node = self.child(depth, node, next.label)?;
+            stack.push(node).ok()?;
+        }
+        Some(node)
     }
 
     /// The simplex of some vertices, increasing; `None` if there is none, or of no vertices.

@@ -12,6 +12,7 @@ mod boundary;
 mod cofaces;
 mod descendants;
 mod link;
+mod neighbours;
 mod order;
 mod validate;
 
@@ -231,11 +232,23 @@ impl<'a, I: Index> Tree<'a, I> {
     /// The children of consecutive nodes of dimension `dim`, which are consecutive too.
     #[inline]
     fn children_of(&self, dim: Dim, nodes: Range<usize>) -> Range<usize> {
-        let level = self.levels.ids(dim + 1);
+        self.children_in(&self.levels.ids(dim + 1), nodes)
+    }
+
+    /// The children of consecutive nodes, given the ids of the dimension that they are of.
+    #[inline]
+    fn children_in(&self, level: &Range<usize>, nodes: Range<usize>) -> Range<usize> {
         let bound = |node: usize| self.child_offsets.get(node).map_or(level.end, |offset| offset.to_usize());
         // Clamped, for in a buffer that is not a tree an offset may be anything.
-        let start = bound(nodes.start).clamp(level.start, level.end);
-        start..bound(nodes.end).clamp(start, level.end)
+        let start = bound(nodes.start).max(level.start).min(level.end);
+        start..bound(nodes.end).max(start).min(level.end)
+    }
+
+    /// Reads the first child of a node for the sake of the cache: where it is read before it is known to be needed, the
+    /// memory has the time to deliver it.
+    #[inline]
+    fn fetch_offset(&self, node: usize) {
+        core::hint::black_box(self.child_offsets.get(node).copied());
     }
 
     /// The child that ends with `label` of a node of `depth` vertices; the root has none, whatever its number.
@@ -243,7 +256,11 @@ impl<'a, I: Index> Tree<'a, I> {
     fn child(&self, depth: usize, node: usize, label: usize) -> Option<usize> {
         match depth.checked_sub(1) {
             None => (label < self.levels.start(1)).then_some(label),
-            Some(dim) => self.last_vertices.find(self.child_range(dim, node), label),
+            Some(dim) => {
+                let children = self.child_range(dim, node);
+                self.fetch_offset(children.start);
+                self.last_vertices.find(children, label)
+            }
         }
     }
 

@@ -126,6 +126,7 @@ impl Args {
             tree: !self.no_tree,
             checksums: !self.no_checksums,
             provenance: self.provenance.as_deref(),
+            ..EncodeOptions::default()
         };
         let encoding = Encoding::new(&built, &options)?;
         output::to_path(path, existing, |out| encoding.write_to(out))?;

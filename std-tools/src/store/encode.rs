@@ -14,6 +14,11 @@ use crate::build::{Arrays, Built, SigArrays};
 use crate::frozen::{FrozenTree, LastVertices};
 use crate::soup::{Coordinates, Labels, Scalars};
 
+/// The dimension from which on a SIG gets lower neighbours by default: they cost an index an edge, little where most
+/// simplices are larger, and stars in such complexes have so many top simplices that the tree finds them faster than the
+/// partial co-boundary.
+const LOWER_NEIGHBOURS_FROM: usize = 4;
+
 /// How a complex is encoded. The default: the least width, tree sections, checksums, no provenance.
 #[derive(Clone, Copy, Debug)]
 pub struct EncodeOptions<'a> {
@@ -21,6 +26,10 @@ pub struct EncodeOptions<'a> {
     pub width: Option<IndexWidth>,
     /// Whether the file carries the child offsets and last vertices, which make [`find`](sig_core::Complex::find) fast.
     pub tree: bool,
+    /// Whether a SIG with the tree's sections carries the lower neighbours of each vertex too, which make
+    /// [`star`](sig_core::Complex::star) and the like fast where simplices have many cofaces. If it is not given, it
+    /// does from dimension 4 on.
+    pub lower_neighbours: Option<bool>,
     /// Whether the file carries checksums.
     pub checksums: bool,
     /// Where the complex comes from, in the caller's words; nothing of the kind is added by itself.
@@ -29,7 +38,7 @@ pub struct EncodeOptions<'a> {
 
 impl Default for EncodeOptions<'_> {
     fn default() -> Self {
-        Self { width: None, tree: true, checksums: true, provenance: None }
+        Self { width: None, tree: true, lower_neighbours: None, checksums: true, provenance: None }
     }
 }
 
@@ -189,9 +198,9 @@ impl<'a> Encoding<'a> {
         let mut encoding = Self::of_levels(Kind::Tree, &tree.first, tree.num_simplices, largest, options)?;
         let width = encoding.width;
         encoding.indices.push((SectionKind::ChildOffsets, Indices::from_u32(&tree.child_offsets, width)));
-        let (offsets, neighbours) = lower_neighbours(tree);
-        encoding.indices.push((SectionKind::LowerOffsets, Indices::owned(offsets, width)));
-        encoding.lower_neighbours = Some(Indices::owned(neighbours, width_of_vertices(tree.num_vertices())));
+        encoding.add_lower_neighbours(tree.num_vertices(), |vertex| {
+            tree.children(vertex).map(|edge| tree.last_vertices.at(edge) as usize)
+        });
         encoding.last_vertices = Some(match &tree.last_vertices {
             LastVertices::Bits16(vertices) => Indices::Bits16(vertices.into()),
             LastVertices::Bits32(vertices) => Indices::from_u32(vertices, width_of_vertices(tree.num_vertices())),
@@ -219,6 +228,12 @@ impl<'a> Encoding<'a> {
             encoding.indices.push((SectionKind::ChildOffsets, at_width(&arrays.child_offsets, width)));
             let least = width_of_vertices(arrays.ids(0).len());
             encoding.last_vertices = Some(Indices::from_u32(&arrays.last_vertices, least));
+            if options.lower_neighbours.unwrap_or(arrays.first.len() > LOWER_NEIGHBOURS_FROM) {
+                let offset = |vertex: usize| arrays.child_offsets.get(vertex).map_or(0, |offset| offset.to_usize());
+                encoding.add_lower_neighbours(arrays.ids(0).len(), |vertex| {
+                    arrays.last_vertices[offset(vertex)..offset(vertex + 1)].iter().map(|&end| end as usize)
+                });
+            }
         }
         Ok(encoding)
     }
@@ -258,6 +273,26 @@ impl<'a> Encoding<'a> {
             filtration: None,
             provenance: options.provenance,
         })
+    }
+
+    /// Adds the lower neighbours of all vertices, increasing for each, and where those of each vertex start, given the
+    /// upper ones.
+    fn add_lower_neighbours<U: Iterator<Item = usize>>(&mut self, vertices: usize, upper: impl Fn(usize) -> U) {
+        let mut offsets = vec![0_u32; vertices + 1];
+        (0..vertices).flat_map(&upper).for_each(|end| offsets[end + 1] += 1);
+        for vertex in 0..vertices {
+            offsets[vertex + 1] += offsets[vertex];
+        }
+        let mut free = offsets.clone();
+        let mut neighbours = vec![0; offsets[vertices] as usize];
+        for (vertex, number) in (0..vertices).zip(0..) {
+            for end in upper(vertex) {
+                neighbours[free[end] as usize] = number;
+                free[end] += 1;
+            }
+        }
+        self.indices.push((SectionKind::LowerOffsets, Indices::owned(offsets, self.width)));
+        self.lower_neighbours = Some(Indices::owned(neighbours, width_of_vertices(vertices)));
     }
 
     /// The width of the indices.
@@ -349,28 +384,6 @@ impl<'a> Encoding<'a> {
             Ok(bytes)
         })?
     }
-}
-
-/// The lower neighbours of all vertices, increasing for each, and where those of each vertex start.
-fn lower_neighbours(tree: &FrozenTree) -> (Vec<u32>, Vec<u32>) {
-    let (vertices, edges) = (tree.num_vertices(), tree.ids(1));
-    let mut offsets = vec![0_u32; vertices + 1];
-    for edge in edges.clone() {
-        offsets[tree.last_vertices.at(edge) as usize + 1] += 1;
-    }
-    for vertex in 0..vertices {
-        offsets[vertex + 1] += offsets[vertex];
-    }
-    let mut free = offsets.clone();
-    let mut neighbours = vec![0; edges.len()];
-    for (vertex, number) in (0..vertices).zip(0..) {
-        for edge in tree.children(vertex) {
-            let slot = &mut free[tree.last_vertices.at(edge) as usize];
-            neighbours[*slot as usize] = number;
-            *slot += 1;
-        }
-    }
-    (offsets, neighbours)
 }
 
 /// The coordinates as a column, and how many a vertex has.

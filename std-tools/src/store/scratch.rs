@@ -29,7 +29,8 @@ pub struct OwnedScratch<I> {
 }
 
 impl<I: Index> OwnedScratch<I> {
-    /// Memory for the queries on `complex`: a mark, a queue entry and an entry of the answer for each simplex.
+    /// Memory for the queries on `complex`: a mark, a queue entry and an entry of the answer for each simplex,
+    /// and a queue entry for each vertex.
     ///
     /// That is enough for every query but [`k_adjacency`](Relations::k_adjacency) (and so
     /// [`adjacency`](Relations::adjacency)) around very many simplices of high dimension, which gathers repetitions: see
@@ -40,10 +41,11 @@ impl<I: Index> OwnedScratch<I> {
         // Vertices without edges take no bytes, and there may be any number of them. An answer has none of them but the one
         // that was asked for.
         let count = if complex.dim() == Some(0) { 1 } else { simplices };
+        let queue = if complex.dim() == Some(0) { 1 } else { simplices.saturating_add(complex.num_vertices()) };
         Self {
             marks: vec![0; mark_words(simplices)],
-            queue: vec![I::ZERO; count],
-            masks: vec![0; count],
+            queue: vec![I::ZERO; queue],
+            masks: vec![0; queue],
             found: vec![I::ZERO; count],
         }
     }

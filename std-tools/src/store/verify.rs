@@ -88,7 +88,7 @@ pub enum RebuildError {
 /// [`RebuildError`]: the first simplex that differs, or why there is nothing to compare with.
 pub fn rebuild<I: Index>(complex: &Complex<'_, I>, options: &BuildOptions<'_>) -> Result<(), RebuildError> {
     let built = build_again(complex, options)?;
-    let encode = EncodeOptions { width: Some(I::WIDTH), tree: false, checksums: false, provenance: None };
+    let encode = EncodeOptions { width: Some(I::WIDTH), tree: false, checksums: false, ..EncodeOptions::default() };
     let bytes = Encoding::new(&built, &encode)?.to_bytes()?;
     drop(built);
     let loaded = super::Loaded::from_file_bytes(bytes)?;
