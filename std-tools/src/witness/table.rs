@@ -185,7 +185,8 @@ impl Scale {
             _ if distance >= f64::MAX => f64::INFINITY,
             (Relaxation::Distance(_), metric) => largest_rank(metric, distance),
             (Relaxation::Squared(_), Metric::Euclidean) => distance,
-            (Relaxation::Squared(_), _) => (distance.sqrt() * (1.0 + SLACK)).next_up(),
+            // A square that underflows says little of its root: all roots of what is subnormal are within.
+            (Relaxation::Squared(_), _) => (distance.max(f64::MIN_POSITIVE).sqrt() * (1.0 + SLACK)).next_up(),
         }
     }
 }
