@@ -5,7 +5,7 @@
 //! the whole structure: the first child and the last vertex of each simplex. A third, the lower neighbours of each vertex,
 //! is the paper's list of the nodes of depth 2 with a label (2.1): with it cofaces are found without looking elsewhere.
 //!
-//! This file opens a tree and moves in it; faces are in [`boundary`], cofaces in [`cofaces`], orders in [`order`].
+//! This file opens a tree and moves in it; faces are in `boundary`, cofaces in `cofaces`, orders in `order`.
 
 mod any;
 mod boundary;

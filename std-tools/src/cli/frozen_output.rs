@@ -48,7 +48,7 @@ pub(super) struct FrozenTarget {
 }
 
 impl FrozenTarget {
-    /// Checks, before the long work, that [`write`] will not be refused, and that it replaces none of the inputs.
+    /// Checks, before the long work, that [`write`](write()) will not be refused, and that it replaces none of the inputs.
     pub(super) fn check(&self, inputs: &[PathBuf], json: bool) -> anyhow::Result<()> {
         let path = &self.target.output;
         if json && output::is_stdout(path) {
