@@ -24,9 +24,9 @@ fn check(oracle: &Oracle, width: IndexWidth, tree: bool) {
 }
 
 /// The same complex as a file of kind tree, with and without lower neighbours.
-fn check_tree(oracle: &Oracle, width: IndexWidth, filtration: Option<Vec<f64>>) {
+fn check_tree(oracle: &Oracle, width: IndexWidth, filtration: Option<&[f64]>) {
     for lower in [false, true] {
-        let options = Options { lower, filtration: filtration.clone(), ..Options::bare(width) };
+        let options = Options { lower, filtration: filtration.map(<[f64]>::to_vec), ..Options::bare(width) };
         let bytes = encode_tree(oracle, &options);
         let any = AnyTree::from_bytes(&bytes).unwrap();
         with_tree!(any, tree => {
@@ -44,9 +44,10 @@ proptest! {
     fn of_random_trees(simplices in strategies::simplices(), width in 0..3usize, salt: u32) {
         let oracle = Oracle::new(&simplices);
         // The greatest of some numbers of the vertices, so not less than those of faces, and often equal.
-        let number = |&vertex: &usize| f64::from((vertex as u32).wrapping_mul(salt | 1) % 5);
+        let number = |&vertex: &usize| f64::from(u32::try_from(vertex).unwrap().wrapping_mul(salt | 1) % 5);
         let value = |word: &sig_tests::oracle::Word| word.iter().map(number).fold(0.0, f64::max);
-        check_tree(&oracle, IndexWidth::ALL[width], Some(oracle.words().iter().map(value).collect()));
+        let values: Vec<f64> = oracle.words().iter().map(value).collect();
+        check_tree(&oracle, IndexWidth::ALL[width], Some(&values));
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub fn tree(bytes: &[u8]) {
     with_tree!(any, tree => {
         ask_tree(&tree, ASKED);
         if tree.validate().is_ok() {
-            let word = |simplex| tree.vertices(simplex).map(|vertex| vertex.index()).collect::<Word>();
+            let word = |simplex| tree.vertices(simplex).map(sig_core::VertexId::index).collect::<Word>();
             let words: Vec<Word> = tree.simplices().map(word).collect();
             conformance::assert_tree_conforms(&tree, &Oracle::new(&words));
         }

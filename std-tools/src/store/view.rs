@@ -8,6 +8,7 @@ use sig_core::{AnyComplex, AnyTree};
 /// Both are [`Relations`](sig_core::Relations); [`with_view!`](crate::with_view) evaluates an expression with whichever it
 /// is.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "made once a file, and copied by nobody in a loop")]
 pub enum View<'a> {
     /// A file of kind SIG.
     Complex(AnyComplex<'a>),
