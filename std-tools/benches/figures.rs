@@ -320,7 +320,7 @@ impl Bench {
     /// Figure 11, bottom left.
     fn growth_with_relaxation(&self) -> Result<()> {
         let Some(points) = self.load("natural_patches_15000x25.npy")? else { return Ok(()) };
-        let steps: Vec<(usize, f64)> = [0.0, 0.005, 0.01, 0.015, 0.02].map(|squared| (1_000, squared)).to_vec();
+        let steps: Vec<(usize, f64)> = [0.0, 0.0005, 0.001, 0.0015, 0.002].map(|squared| (1_000, squared)).to_vec();
         let rows = self.relaxed(&points, &steps, 5, false)?;
         let title = "Relaxed witness complexes of Bro, 1,000 landmarks, k = 5";
         self.draw("figure-11-relaxation", title, "α² (relaxation on squared distances)", &rows)
