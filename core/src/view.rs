@@ -118,10 +118,71 @@ macro_rules! common_methods {
                     _ => None,
                 }
             }
+
+            /// The children of the simplex's parent in the simplex tree, the simplex among them: the vertices, for a vertex.
+            /// Cost: as [`parent`](Self::parent) and [`children`](Self::children).
+            #[must_use]
+            pub fn siblings(&self, simplex: SimplexId) -> $crate::complex::SimplexRange {
+                match (self.dim_of(simplex), self.parent(simplex)) {
+                    (_, Some(parent)) => self.children(parent),
+                    (Some(_), None) => self.simplices_of_dim(0),
+                    (None, None) => $crate::complex::SimplexRange::new(0..0),
+                }
+            }
+
+            /// The simplices whose words start with the given vertices, which must increase strictly; none if there is no
+            /// simplex of them. The empty prefix is that of all simplices.
+            ///
+            /// Cost: [`find`](Self::find), then [`children`](Self::children) twice a dimension.
+            #[must_use]
+            pub fn with_prefix(&self, prefix: &[$crate::VertexId]) -> $crate::tree::Descendants<'_, Self> {
+                $crate::tree::Descendants::new(self, prefix)
+            }
+
+            /// A_p(σ): for p > 0 the other p-simplices that share a (p−1)-face with σ; for p = 0 the other ends of the edges
+            /// at the vertex.
+            ///
+            /// Cost: that of C_{p−1,p} for each facet τ, so in a SIG O(Σ_τ Σ_{r≥p} λ_r(τ)), linear in the top simplices
+            /// incident at the facets; for p = 0 that of C_{0,1}, in a tree of the lists of neighbours. Where p > 0 there must
+            /// be a mark for each simplex, and the answer's part of the scratch needs room for σ once for each facet besides.
+            /// Source: Algorithm 7 of sig-2004, which lists σ itself too.
+            ///
+            /// # Errors
+            /// [`ScratchError`]($crate::ScratchError) if the scratch is too small; it can be used again.
+            pub fn adjacency<'s>(
+                &self,
+                simplex: SimplexId,
+                scratch: &'s mut $crate::Scratch<'_, I>,
+            ) -> Result<$crate::relations::Simplices<'s, I>, $crate::ScratchError> {
+                match self.dim_of(simplex) {
+                    Some(0) => self.adjacent_vertices(simplex, scratch),
+                    Some(dim) => self.k_adjacency(simplex, dim - 1, scratch),
+                    None => self.k_adjacency(simplex, 0, scratch),
+                }
+            }
         }
     };
 }
 pub(crate) use common_methods;
+
+/// The simplex with the given vertices, which must increase strictly, where `child(dim, node, vertex)` is the simplex of
+/// dimension `dim` that ends with `vertex` below a node, or the vertex itself for `dim` 0.
+pub(crate) fn find_word(
+    vertices: &[VertexId],
+    child: impl Fn(Dim, usize, usize) -> Option<usize>,
+) -> Option<SimplexId> {
+    let (first, rest) = vertices.split_first()?;
+    let mut node = child(0, 0, first.index())?;
+    let mut last = *first;
+    for (dim, &vertex) in (1..).zip(rest) {
+        if vertex <= last {
+            return None;
+        }
+        node = child(dim, node, vertex.index())?;
+        last = vertex;
+    }
+    Some(SimplexId::new(node))
+}
 
 /// A simplicial complex that answers for its relations, whatever it stores: [`Complex`](crate::Complex) or
 /// [`Tree`](crate::Tree).

@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::{Complex, SimplexRange};
 use crate::id::{Dim, Index, SimplexId, VertexId};
-use crate::tree::Descendants;
+use crate::view::find_word;
 
 impl<I: Index> Complex<'_, I> {
     /// The parent in the simplex tree: the face without the last vertex; `None` for a vertex, whose parent is the root.
@@ -29,17 +29,6 @@ impl<I: Index> Complex<'_, I> {
             .map_or_else(|| SimplexRange::new(self.child_range(simplex.index())), |tree| tree.children(simplex))
     }
 
-    /// The children of the simplex's parent, the simplex among them: the vertices, for a vertex. Cost: as
-    /// [`children`](Self::children).
-    #[must_use]
-    pub fn siblings(&self, simplex: SimplexId) -> SimplexRange {
-        match (self.dim_of(simplex), self.parent(simplex)) {
-            (_, Some(parent)) => self.children(parent),
-            (Some(_), None) => self.simplices_of_dim(0),
-            (None, None) => SimplexRange::new(0..0),
-        }
-    }
-
     /// The simplex with the given vertices, which must increase strictly; `None` if there is none, or if they do not.
     ///
     /// Cost: a binary search over the children of each prefix. Without the file's tree sections, a search over each
@@ -49,26 +38,10 @@ impl<I: Index> Complex<'_, I> {
         if let Some(tree) = self.as_tree() {
             return tree.find(vertices);
         }
-        let (first, rest) = vertices.split_first()?;
-        let mut node = Some(first.index()).filter(|&vertex| vertex < self.num_vertices())?;
-        let mut last = *first;
-        for (depth, &vertex) in rest.iter().enumerate() {
-            if vertex <= last {
-                return None;
-            }
-            node = self.child(depth, node, vertex.index())?;
-            last = vertex;
-        }
-        Some(SimplexId::new(node))
-    }
-
-    /// The simplices whose words start with the given vertices, which must increase strictly; none if there is no
-    /// simplex of them. The empty prefix is that of all simplices.
-    ///
-    /// Cost: [`find`](Self::find), then two look-ups of children a dimension.
-    #[must_use]
-    pub fn with_prefix(&self, prefix: &[VertexId]) -> Descendants<'_, Self> {
-        Descendants::new(self, prefix)
+        find_word(vertices, |dim, node, vertex| match dim.checked_sub(1) {
+            Some(parent_dim) => self.child(parent_dim, node, vertex),
+            None => Some(vertex).filter(|&vertex| vertex < self.num_vertices()),
+        })
     }
 
     /// The child of a node of dimension `dim` that ends with `vertex`, by the boundary.

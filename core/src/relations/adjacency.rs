@@ -7,26 +7,6 @@ use crate::id::{Dim, Index, SimplexId};
 use crate::scratch::{Scratch, ScratchError};
 
 impl<I: Index> Complex<'_, I> {
-    /// A_p(σ): for p > 0 the other p-simplices that share a (p−1)-face with σ; for p = 0 the other ends of the edges at
-    /// the vertex.
-    ///
-    /// Cost: that of C_{p−1,p} for each facet τ, so O(Σ_τ Σ_{r≥p} λ_r(τ)), linear in the top simplices incident at the
-    /// facets; for p = 0 that of C_{0,1}. The answer's part of the scratch needs room for σ once for each facet besides. Source: Algorithm 7, which lists σ itself too.
-    ///
-    /// # Errors
-    /// [`ScratchError`] if the scratch is too small; it can be used again.
-    pub fn adjacency<'s>(
-        &self,
-        simplex: SimplexId,
-        scratch: &'s mut Scratch<'_, I>,
-    ) -> Result<Simplices<'s, I>, ScratchError> {
-        match self.dim_of(simplex) {
-            Some(0) => self.adjacent_vertices(simplex, scratch),
-            Some(dim) => self.k_adjacency(simplex, dim - 1, scratch),
-            None => self.k_adjacency(simplex, 0, scratch),
-        }
-    }
-
     /// The other p-simplices that share a k-face with a p-simplex (sig-2004, 2: k-adjacent); empty for k ≥ p.
     ///
     /// Cost: that of C_{k,p} for each of the k-faces; the answer's part of the scratch needs room for them all, σ and
@@ -53,7 +33,8 @@ impl<I: Index> Complex<'_, I> {
         Ok(Simplices::new(scratch.found.ids()))
     }
 
-    fn adjacent_vertices<'s>(
+    /// The other ends of the edges at a vertex.
+    pub(crate) fn adjacent_vertices<'s>(
         &self,
         vertex: SimplexId,
         scratch: &'s mut Scratch<'_, I>,

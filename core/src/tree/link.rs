@@ -196,25 +196,6 @@ impl<I: Index> Tree<'_, I> {
         Ok(true)
     }
 
-    /// A_p(σ): for p > 0 the other p-simplices that share a (p−1)-face with σ; for p = 0 the other ends of the edges at
-    /// the vertex.
-    ///
-    /// Cost: that of the co-boundary of each facet, for which the scratch needs marks; for p = 0 the lists of neighbours.
-    ///
-    /// # Errors
-    /// [`ScratchError`] if the scratch is too small; it can be used again.
-    pub fn adjacency<'s>(
-        &self,
-        simplex: SimplexId,
-        scratch: &'s mut Scratch<'_, I>,
-    ) -> Result<Simplices<'s, I>, ScratchError> {
-        match self.dim_of(simplex) {
-            Some(0) => self.adjacent_vertices(simplex, scratch),
-            Some(dim) => self.k_adjacency(simplex, dim - 1, scratch),
-            None => self.k_adjacency(simplex, 0, scratch),
-        }
-    }
-
     /// The other p-simplices that share a k-face with a p-simplex; empty for k ≥ p.
     ///
     /// Cost: that of C_{k,p} for each of the k-faces; the answer's part of the scratch needs room for them all, σ and
@@ -237,7 +218,8 @@ impl<I: Index> Tree<'_, I> {
         Ok(Simplices::new(scratch.found.ids()))
     }
 
-    fn adjacent_vertices<'s>(
+    /// The other ends of the edges at a vertex.
+    pub(crate) fn adjacent_vertices<'s>(
         &self,
         vertex: SimplexId,
         scratch: &'s mut Scratch<'_, I>,

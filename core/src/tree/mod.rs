@@ -29,7 +29,7 @@ use heapless::Vec;
 use crate::complex::{Levels, Sections, SimplexRange};
 use crate::format::{Column, Container, FormatError, Kind, SectionKind};
 use crate::id::{Dim, Index, MAX_DIM, SimplexId, VertexId};
-use crate::view::common_methods;
+use crate::view::{common_methods, find_word};
 
 /// A simplicial complex as its simplex tree, read where it lies: a file of kind *tree*, or the tree's sections of a SIG.
 ///
@@ -164,17 +164,6 @@ impl<'a, I: Index> Tree<'a, I> {
         SimplexRange::new(range)
     }
 
-    /// The children of the simplex's parent, the simplex among them: the vertices, for a vertex. Cost: as
-    /// [`parent`](Self::parent).
-    #[must_use]
-    pub fn siblings(&self, simplex: SimplexId) -> SimplexRange {
-        match (self.dim_of(simplex), self.parent(simplex)) {
-            (_, Some(parent)) => self.children(parent),
-            (Some(_), None) => self.simplices_of_dim(0),
-            (None, None) => SimplexRange::new(0..0),
-        }
-    }
-
     /// The last vertex of a simplex. Cost: one read.
     #[must_use]
     #[inline]
@@ -187,26 +176,7 @@ impl<'a, I: Index> Tree<'a, I> {
     /// Cost: for each vertex after the first two reads and a binary search among the children of the prefix before it.
     #[must_use]
     pub fn find(&self, vertices: &[VertexId]) -> Option<SimplexId> {
-        let (first, rest) = vertices.split_first()?;
-        let mut node = self.child(0, 0, first.index())?;
-        let mut last = *first;
-        for (depth, &vertex) in (1..).zip(rest) {
-            if vertex <= last {
-                return None;
-            }
-            node = self.child(depth, node, vertex.index())?;
-            last = vertex;
-        }
-        Some(SimplexId::new(node))
-    }
-
-    /// The simplices whose words start with the given vertices, which must increase strictly; none if there is no
-    /// simplex of them. The empty prefix is that of all simplices.
-    ///
-    /// Cost: [`find`](Self::find), then two reads a dimension.
-    #[must_use]
-    pub fn with_prefix(&self, prefix: &[VertexId]) -> Descendants<'_, Self> {
-        Descendants::new(self, prefix)
+        find_word(vertices, |dim, node, vertex| self.child(dim, node, vertex))
     }
 
     /// The parent of a node of dimension `dim`.
