@@ -16,14 +16,13 @@ use std::ffi::OsStr;
 use std::hint::black_box;
 use std::path::Path;
 
-use common::{figure, run, timed, write_points};
-use rayon::prelude::*;
+use common::{Timing, figure, run, timed, write_points};
 use sig_tools::build::{BuildOptions, complete};
 use sig_tools::flag::{FlagOptions, expand};
 use sig_tools::frozen::FrozenTree;
 use sig_tools::generate::sphere4;
-use sig_tools::graph::Graph;
-use sig_tools::points::{Metric, Points};
+use sig_tools::points::Metric;
+use sig_tools::proximity::{RadiusOptions, radius_graph};
 use sig_tools::store::{EncodeOptions, Encoding};
 
 mod common;
@@ -43,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Error>> {
     let points = sphere4(count, 1);
-    let graph = radius_graph(&points, radius)?;
+    let graph = radius_graph(&points, Metric::Euclidean, radius, &RadiusOptions::default())?;
     let file = tempfile::NamedTempFile::new()?;
     write_points(&points, file.path())?;
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -71,6 +70,7 @@ fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Erro
     }
     let simplices = counts.iter().sum::<usize>() as f64;
     let each = |seconds: f64| format!("{:.2} ns a simplex", seconds * 1e9 / simplices);
+    let median = |samples| Timing::of(samples).median;
     let (all, single, floor, whole) = (median(all), median(single), median(floor), median(whole));
     println!("  expansion, all threads  {}, {:.1} times writing as many bytes on one", each(all), all / floor);
     println!("  expansion, one thread   {}, {:.1} times", each(single), single / floor);
@@ -84,38 +84,9 @@ fn measure(count: usize, radius: f64, max_dim: usize) -> Result<(), Box<dyn Erro
     Ok(())
 }
 
-fn median(mut samples: Vec<f64>) -> f64 {
-    samples.sort_by(f64::total_cmp);
-    samples.get(samples.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
 /// As many bytes as the tree has, written in memory that is new: no expansion takes less.
 fn written(tree: &FrozenTree) -> (Vec<u16>, Vec<u32>) {
     (black_box(vec![1; tree.num_simplices]), black_box(vec![1; tree.child_offsets.len()]))
-}
-
-/// The pairs up to a distance, found through cells of the first two coordinates.
-fn radius_graph(points: &Points, radius: f64) -> Result<Graph, Box<dyn Error>> {
-    let side = (2.0 / radius).ceil() as usize + 1;
-    let cell = |index: usize, axis: usize| ((points.point(index)[axis] + 1.0) / radius) as usize;
-    let mut cells = vec![Vec::new(); side * side];
-    for index in 0..points.len() {
-        cells[cell(index, 0) * side + cell(index, 1)].push(index as u32);
-    }
-    let lists: Vec<Vec<u32>> = (0..points.len())
-        .into_par_iter()
-        .map(|index| {
-            let near = |axis| cell(index, axis).saturating_sub(1)..side.min(cell(index, axis) + 2);
-            let is_near =
-                |other: &u32| Metric::Euclidean.distance(points.point(index), points.point(*other as usize)) <= radius;
-            let candidates = near(0).flat_map(|x| near(1).flat_map(move |y| [x * side + y])).flat_map(|c| &cells[c]);
-            let mut list: Vec<u32> =
-                candidates.copied().filter(|other| *other as usize > index).filter(is_near).collect();
-            list.sort_unstable();
-            list
-        })
-        .collect();
-    Ok(Graph::from_upper_lists(&lists, None)?)
 }
 
 /// Seconds that the peer takes to insert the same edges and expand them; its counts must be the same.

@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use common::{Timing, timed};
-use rayon::prelude::*;
 use sig_tools::generate::{SplitMix64, sphere4};
 use sig_tools::graph::Graph;
 use sig_tools::points::{Metric, Points};
+use sig_tools::proximity::{RadiusOptions, radius_graph};
 use sig_tools::simplex_tree::{LinkCondition, Simplex, SimplexTree};
 
 mod common;
@@ -101,13 +101,8 @@ fn compare(what: &str, own: Vec<f64>, theirs: Vec<f64>) {
 
 /// The graph of the pairs at distance up to `radius`, of the first `count` points.
 fn graph(points: &Points, count: usize, radius: f64) -> Outcome<Graph> {
-    let near = |a: usize| -> (Vec<u32>, Vec<f64>) {
-        let distance = |b: usize| Metric::Euclidean.distance(points.point(a), points.point(b));
-        let near = (a + 1..count).map(|b| (b, distance(b))).filter(|&(_, distance)| distance <= radius);
-        near.filter_map(|(b, distance)| Some((u32::try_from(b).ok()?, distance))).unzip()
-    };
-    let (lists, weights): (Vec<_>, Vec<_>) = (0..count).into_par_iter().map(near).unzip();
-    Ok(Graph::from_upper_lists(&lists, Some(&weights))?)
+    let points = points.select(&(0..count).collect::<Vec<_>>());
+    Ok(radius_graph(&points, Metric::Euclidean, radius, &RadiusOptions { weighted: true, ..RadiusOptions::default() })?)
 }
 
 /// The flag complex of the points.
