@@ -1,6 +1,5 @@
 //! `sig build`: meshes and lists of simplices become a complex in a file.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -14,8 +13,8 @@ use sig_tools::io::{self as readers, Format, MergeReport, ReadOptions, ReadRepor
 use sig_tools::soup::Soup;
 use sig_tools::store::{EncodeOptions, Encoding};
 
-use super::output::{self, grouped};
-use super::{UsageError, progress};
+use super::output::{self, Content, grouped};
+use super::{Threads, progress};
 
 /// Build a complex from meshes or lists of simplices
 ///
@@ -68,9 +67,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "TEXT")]
     provenance: Option<String>,
 
-    /// The number of threads; by default one for each processor. The file is the same for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: Threads,
 
     /// Refuse to build more than N simplices; by default, more than memory holds
     #[arg(long, value_name = "N")]
@@ -106,19 +104,8 @@ impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let start = Instant::now();
         let (path, existing) = (&self.target.output, self.target.existing());
-        if self.json && output::is_stdout(path) {
-            return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
-        }
-        if output::is_stdout(path) && std::io::stdout().is_terminal() {
-            return Err(UsageError("-o - writes a binary file, and standard output is a terminal".to_owned()).into());
-        }
-        output::check(path, existing, &self.inputs)?;
-        if self.inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
-            return Err(UsageError("standard input can be read only once".to_owned()).into());
-        }
-        if let Some(threads) = self.threads {
-            rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
-        }
+        self.target.check(&self.inputs, self.json, Content::Binary)?;
+        self.threads.start()?;
         let (soup, inputs, merged) = self.read()?;
         let built = self.build(soup)?;
         let options = EncodeOptions {
@@ -303,10 +290,7 @@ impl Report {
         {
             output::log(format_args!("       vertex {from} of {file} is now {to}, and so on"));
         }
-        let total: usize = self.simplices.iter().sum();
-        let counts: Vec<_> = self.simplices.iter().map(grouped).collect();
-        let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
-        output::log(format_args!("built  dimension {}, {} simplices{counts}", self.dimension, grouped(total)));
+        output::log(format_args!("built  dimension {}, {}", self.dimension, output::counted(&self.simplices)));
         note(self.repeated, "simplices merged that repeat another");
         note(self.non_maximal, "simplices merged that are faces of others");
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");

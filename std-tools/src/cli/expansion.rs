@@ -16,7 +16,7 @@ use sig_tools::soup::{Coordinates, Labels};
 
 use super::frozen_output::{self, FrozenTarget, Written};
 use super::output::{self, grouped};
-use super::progress;
+use super::{Threads, progress};
 
 /// How far a graph is expanded, and where to.
 #[derive(clap::Args)]
@@ -36,9 +36,8 @@ pub(super) struct Expansion {
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     memory: Option<u64>,
 
-    /// The number of threads; by default one for each processor. The file is the same for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: Threads,
 
     /// Print a JSON object on what was read and made
     #[arg(long)]
@@ -89,9 +88,7 @@ impl Expansion {
         if !self.dry_run {
             self.target.check(std::slice::from_ref(input), self.json)?;
         }
-        if let Some(threads) = self.threads {
-            rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
-        }
+        self.threads.start()?;
         Ok(())
     }
 

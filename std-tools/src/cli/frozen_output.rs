@@ -1,7 +1,7 @@
 //! Writing a simplex tree in level order as a file of either kind, or as text: what every command ends with that makes or changes a
 //! complex by its tree.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -13,8 +13,8 @@ use sig_tools::frozen::{FrozenTree, LastVertices};
 use sig_tools::simplex_tree::SimplexTree;
 use sig_tools::store::{EncodeOptions, Encoding};
 
-use super::output::{self, grouped};
-use super::{UsageError, progress};
+use super::output::{self, Content, grouped};
+use super::progress;
 
 /// Which file a complex becomes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, ValueEnum)]
@@ -50,14 +50,7 @@ pub(super) struct FrozenTarget {
 impl FrozenTarget {
     /// Checks, before the long work, that [`write`](write()) will not be refused, and that it replaces none of the inputs.
     pub(super) fn check(&self, inputs: &[PathBuf], json: bool) -> anyhow::Result<()> {
-        let path = &self.target.output;
-        if json && output::is_stdout(path) {
-            return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
-        }
-        if self.kind != Kind::Gudhi && output::is_stdout(path) && std::io::stdout().is_terminal() {
-            return Err(UsageError("-o - writes a binary file, and standard output is a terminal".to_owned()).into());
-        }
-        output::check(path, self.target.existing(), inputs)
+        self.target.check(inputs, json, if self.kind == Kind::Gudhi { Content::Text } else { Content::Binary })
     }
 
     /// The bytes that are free on the disk of the file, if the system tells. A file of this program takes at least what its
@@ -188,10 +181,7 @@ fn to_path(target: &FrozenTarget, fill: impl FnOnce(&mut dyn Write) -> io::Resul
 impl Written {
     /// Says it on standard error.
     pub(super) fn log(&self) {
-        let total: usize = self.simplices.iter().sum();
-        let counts: Vec<_> = self.simplices.iter().map(grouped).collect();
-        let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
-        output::log(format_args!("made   dimension {}, {} simplices{counts}", self.dimension, grouped(total)));
+        output::log(format_args!("made   dimension {}, {}", self.dimension, output::counted(&self.simplices)));
         let width = self.index_bits.map_or(String::new(), |width| format!(", {width}-bit indices"));
         output::log(format_args!("wrote  {}: {}, {} bytes{width}", self.output, self.kind, grouped(self.file_bytes)));
     }

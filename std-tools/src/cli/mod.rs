@@ -90,6 +90,24 @@ impl Command {
     }
 }
 
+/// How many threads work.
+#[derive(clap::Args)]
+struct Threads {
+    /// The number of threads; by default one for each processor. The file is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    /// Begins them, if a number was asked for.
+    fn start(&self) -> anyhow::Result<()> {
+        if let Some(threads) = self.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
+        }
+        Ok(())
+    }
+}
+
 /// The command line for generators of completions and manuals.
 fn command() -> clap::Command {
     Cli::command()

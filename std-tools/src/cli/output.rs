@@ -1,7 +1,7 @@
 //! Writing: data to standard output or, whole or not at all, to a file.
 
 use std::fmt::Display;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
 use serde::Serialize;
@@ -73,10 +73,41 @@ pub(super) struct Target {
     force: bool,
 }
 
+/// What is written, as far as a terminal cares.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Content {
+    Text,
+    Binary,
+}
+
 impl Target {
+    /// Checks, before the long work, that the file can be written, that it replaces none of the inputs, and that nothing
+    /// else wants its place or that of an input: the JSON object standard output, another input standard input.
+    pub(super) fn check(&self, inputs: &[std::path::PathBuf], json: bool, content: Content) -> anyhow::Result<()> {
+        let path = &self.output;
+        if json && is_stdout(path) {
+            return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
+        }
+        if content == Content::Binary && is_stdout(path) && io::stdout().is_terminal() {
+            return Err(UsageError("-o - writes a binary file, and standard output is a terminal".to_owned()).into());
+        }
+        check(path, self.existing(), inputs)?;
+        if inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
+            return Err(UsageError("standard input can be read only once".to_owned()).into());
+        }
+        Ok(())
+    }
+
     pub(super) fn existing(&self) -> Existing {
         if self.force { Existing::Replace } else { Existing::Refuse }
     }
+}
+
+/// How many simplices there are, and of each dimension: `25 simplices: 5 + 10 + 10`.
+pub(super) fn counted(simplices: &[usize]) -> String {
+    let counts: Vec<_> = simplices.iter().map(grouped).collect();
+    let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
+    format!("{} simplices{counts}", grouped(simplices.iter().sum::<usize>()))
 }
 
 /// A number with its digits in groups of three.

@@ -91,7 +91,5 @@ pub(super) fn vertex(tree: &SimplexTree, vertices: &Vertices, name: &str) -> any
 /// Says on standard error what was read.
 pub(super) fn log(path: &Path, tree: &SimplexTree) {
     let name = displayed(path);
-    let counts: Vec<_> = tree.counts().iter().map(output::grouped).collect();
-    let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
-    output::log(format_args!("read   {name}: {} simplices{counts}", output::grouped(tree.num_simplices())));
+    output::log(format_args!("read   {name}: {}", output::counted(tree.counts())));
 }

@@ -13,7 +13,7 @@ use sig_tools::witness::{Landmarks, Relaxation, WitnessOptions, witness_complex}
 use super::frozen_output::{self, FrozenTarget, Written};
 use super::output::{self, grouped};
 use super::rips::Distance;
-use super::{UsageError, progress};
+use super::{Threads, UsageError, progress};
 
 /// Build the witness complex of landmarks and witnesses
 ///
@@ -60,9 +60,8 @@ pub(super) struct Args {
     #[arg(short, long, value_parser = super::named(SpaceFormat::ALL, SpaceFormat::name, SpaceFormat::description))]
     format: Option<SpaceFormat>,
 
-    /// The number of threads; by default one for each processor. The file is the same for any number
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: Threads,
 
     /// Refuse to build more than N simplices; by default, more than memory holds
     #[arg(long, value_name = "N")]
@@ -109,12 +108,7 @@ impl Args {
         let options = self.options()?;
         let inputs: Vec<PathBuf> = std::iter::once(&self.witnesses).chain(&self.choice.landmarks).cloned().collect();
         self.target.check(&inputs, self.json)?;
-        if inputs.len() == 2 && inputs.iter().all(|input| input.as_os_str() == "-") {
-            return Err(UsageError("standard input can be read only once".to_owned()).into());
-        }
-        if let Some(threads) = self.threads {
-            rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
-        }
+        self.threads.start()?;
         let witnesses = self.read(&self.witnesses)?;
         let landmarks = self.landmarks(&witnesses, options.metric)?;
         let build = || witness_complex(&witnesses, &landmarks, &options);
