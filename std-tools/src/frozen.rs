@@ -10,7 +10,6 @@ use std::ops::Range;
 use sig_core::{Dim, Relations, SimplexId, VertexId};
 
 use crate::build::ids;
-use crate::simplex_tree::{coordinates_of, names_of};
 use crate::soup::{Coordinates, Labels};
 
 /// The most simplices that a [`FrozenTree`] holds: ids are 32-bit, and the largest is the stop code.
@@ -81,8 +80,8 @@ impl FrozenTree {
             num_simplices,
             last_vertices,
             filtration: complex.filtration().map(<[f64]>::to_vec),
-            labels: names_of(complex),
-            coordinates: coordinates_of(complex),
+            labels: Labels::of(complex),
+            coordinates: Coordinates::of(complex),
         })
     }
 

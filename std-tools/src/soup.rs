@@ -3,7 +3,11 @@
 //! A [`Soup`] is not yet a complex: simplices may repeat, be faces of one another, repeat a vertex, and stand in any
 //! order. [`crate::io`] makes soups, [`crate::build`] turns them into complexes; neither knows of the other.
 
-use sig_core::{Dim, MAX_DIM};
+use sig_core::complex::columns;
+use sig_core::format::Column;
+use sig_core::{Dim, MAX_DIM, Relations, VertexId};
+
+use crate::names::vertex_label;
 
 /// What the input calls its vertices; a vertex number of a [`Soup`] is a row of this table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,6 +21,21 @@ pub enum Labels {
 }
 
 impl Labels {
+    /// What a complex in a file calls its vertices, by number.
+    ///
+    /// Cost: a copy.
+    #[must_use]
+    pub fn of(complex: &impl Relations) -> Self {
+        match complex.labels() {
+            columns::Labels::Numbered => Self::Numbered(complex.num_vertices()),
+            columns::Labels::Integers(labels) => Self::Integers(labels.to_vec()),
+            columns::Labels::Text { .. } => {
+                let vertices = (0..complex.num_vertices()).map(VertexId::new);
+                Self::Tokens(vertices.map(|vertex| vertex_label(complex, vertex).into()).collect())
+            }
+        }
+    }
+
     /// The number of vertices.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -41,6 +60,22 @@ pub struct Coordinates {
     pub dim: usize,
     /// The scalars, in the precision in which the input holds them.
     pub values: Scalars,
+}
+
+impl Coordinates {
+    /// The coordinates of the vertices of a complex in a file, by number; `None` if there are none.
+    ///
+    /// Cost: a copy.
+    #[must_use]
+    pub fn of(complex: &impl Relations) -> Option<Self> {
+        let section = complex.coordinates()?;
+        let values = match section.column {
+            Column::F32(values) => Scalars::F32(values.to_vec()),
+            Column::F64(values) => Scalars::F64(values.to_vec()),
+            _ => return None,
+        };
+        Some(Self { dim: section.components as usize, values })
+    }
 }
 
 /// Scalars in single or double precision.

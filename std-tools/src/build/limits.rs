@@ -113,23 +113,28 @@ impl<'a> Meter<'a> {
 
     /// Starts a phase of `total` steps.
     pub(super) fn stage(&self, phase: Phase, total: usize) -> Stage<'a> {
-        let stage = Stage { progress: self.progress, phase, done: AtomicU64::new(0), total: total as u64 };
-        stage.add(0);
-        stage
+        Stage::new(self.progress, phase, total)
     }
 }
 
-/// A phase under way.
-pub(super) struct Stage<'a> {
-    progress: Option<Progress<'a>>,
-    phase: Phase,
+/// A phase under way, of this or another construction.
+pub(crate) struct Stage<'a, P = Phase> {
+    progress: Option<&'a (dyn Fn(P, u64, u64) + Sync)>,
+    phase: P,
     done: AtomicU64,
     total: u64,
 }
 
-impl Stage<'_> {
+impl<'a, P: Copy> Stage<'a, P> {
+    /// Starts a phase of `total` steps.
+    pub(crate) fn new(progress: Option<&'a (dyn Fn(P, u64, u64) + Sync)>, phase: P, total: usize) -> Self {
+        let stage = Self { progress, phase, done: AtomicU64::new(0), total: total as u64 };
+        stage.add(0);
+        stage
+    }
+
     /// `steps` more are done.
-    pub(super) fn add(&self, steps: usize) {
+    pub(crate) fn add(&self, steps: usize) {
         if let Some(progress) = self.progress {
             let done = self.done.fetch_add(steps as u64, Ordering::Relaxed) + steps as u64;
             progress(self.phase, done, self.total);

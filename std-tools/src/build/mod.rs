@@ -34,6 +34,7 @@ use crate::soup::{Coordinates, Labels, Soup};
 
 pub use complete::complete;
 pub(crate) use facets::seek;
+pub(crate) use limits::Stage;
 pub use limits::available_memory;
 use limits::{Limit, Meter, Reservation};
 pub(crate) use lists::pack;

@@ -7,7 +7,7 @@ use anyhow::Context;
 use serde::Serialize;
 use sig_tools::graph::Graph;
 use sig_tools::io::space::{Space, SpaceFormat, SpaceOptions, read_space};
-use sig_tools::simplex_tree::{coordinates_of, names_of};
+use sig_tools::soup::{Coordinates, Labels};
 use sig_tools::with_view;
 
 use super::expansion::{self, Expansion, Skeleton};
@@ -83,7 +83,7 @@ impl Args {
                 }
                 let skeleton = with_view!(input.view(), complex => {
                     let graph = Graph::of(&complex).with_context(|| format!("{name}: damaged; see sig verify"))?;
-                    Skeleton { graph, labels: names_of(&complex), coordinates: coordinates_of(&complex) }
+                    Skeleton { graph, labels: Labels::of(&complex), coordinates: Coordinates::of(&complex) }
                 });
                 return Ok((skeleton, "sigc"));
             }

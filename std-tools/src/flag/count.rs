@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
-use crate::build::narrow;
+use crate::build::{Stage, narrow};
 use crate::flag::walk::{Batch, Letters, Nodes, Sink, Walk};
 use crate::flag::{Budget, FlagError, Phase, Progress};
 use crate::graph::Graph;
@@ -40,7 +40,7 @@ pub(super) fn parts<L: Index>(
     progress: Option<Progress<'_>>,
 ) -> Result<Parts, FlagError> {
     let total = Total::new(budget.most_simplices());
-    let done = Done::new(progress, Phase::Counting, graph);
+    let done = Stage::new(progress, Phase::Counting, graph.num_vertices());
     let parts: Vec<Part> = divide(graph)
         .into_par_iter()
         .map_init(
@@ -161,29 +161,5 @@ impl<L: Index> Sink<L> for Counter<'_> {
 
     fn is_full(&self) -> bool {
         self.is_full
-    }
-}
-
-/// Tells the caller how many vertices are done.
-pub(super) struct Done<'a> {
-    progress: Option<Progress<'a>>,
-    phase: Phase,
-    done: AtomicU64,
-    all: u64,
-}
-
-impl<'a> Done<'a> {
-    pub(super) fn new(progress: Option<Progress<'a>>, phase: Phase, graph: &Graph) -> Self {
-        let done = Self { progress, phase, done: AtomicU64::new(0), all: graph.num_vertices() as u64 };
-        done.add(0);
-        done
-    }
-
-    /// `vertices` more are done.
-    pub(super) fn add(&self, vertices: usize) {
-        if let Some(progress) = self.progress {
-            let done = self.done.fetch_add(vertices as u64, Ordering::Relaxed) + vertices as u64;
-            progress(self.phase, done, self.all);
-        }
     }
 }

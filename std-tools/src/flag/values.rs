@@ -6,7 +6,8 @@
 use rayon::prelude::*;
 use sig_core::Dim;
 
-use crate::flag::count::{Done, Parts};
+use crate::build::Stage;
+use crate::flag::count::Parts;
 use crate::flag::walk::{ABSENT, LETTERS, Letters, for_each_common};
 use crate::flag::{Phase, Progress};
 use crate::frozen::FrozenTree;
@@ -22,7 +23,7 @@ pub(super) fn find(graph: &Graph, tree: &FrozenTree, parts: &Parts, progress: Op
     for (_, part, len) in parts.lengths() {
         jobs[part].1.push(Values { values: rest.split_off_mut(..len).unwrap_or_default(), done: 0 });
     }
-    let done = Done::new(progress, Phase::Values, graph);
+    let done = Stage::new(progress, Phase::Values, graph.num_vertices());
     jobs.into_par_iter().for_each_init(
         || Carrier::new(graph, dim),
         |carrier, (vertices, mut levels)| {

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
-use crate::build::{index, narrow};
-use crate::flag::count::{Done, Part, Parts};
+use crate::build::{Stage, index, narrow};
+use crate::flag::count::{Part, Parts};
 use crate::flag::walk::{Batch, Letters, Nodes, Sink, Walk};
 use crate::flag::{Phase, Progress};
 use crate::frozen::{FrozenTree, LastVertices};
@@ -26,7 +26,7 @@ pub(super) fn write<L: Index>(
     let num_simplices = index_of(num_simplices);
     let mut labels = vec![L::ZERO; num_simplices];
     let mut child_offsets = vec![0; num_simplices - index_of(leaves) + 1];
-    let done = Done::new(progress, Phase::Writing, graph);
+    let done = Stage::new(progress, Phase::Writing, graph.num_vertices());
     parts.writers(&first, &mut labels, &mut child_offsets).into_par_iter().for_each_init(
         || Walk::<L>::new(graph, dim),
         |walk, (part, mut writer)| {

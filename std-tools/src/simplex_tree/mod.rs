@@ -49,7 +49,6 @@ pub use error::{ContractError, ExpandError, InsertError, NotFree, RelabelError, 
 pub use iterate::DepthFirst;
 pub use node::Simplex;
 pub use thaw::Vertices;
-pub use thaw::{coordinates_of, names_of};
 
 use arena::Arena;
 use lists::LabelLists;

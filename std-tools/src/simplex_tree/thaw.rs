@@ -199,7 +199,7 @@ impl SimplexTree {
     /// # Errors
     /// [`ThawError`]: if the file is damaged, as far as this looks at it.
     pub fn thaw_complex(complex: &impl Relations) -> Result<(Self, Vertices), ThawError> {
-        let vertices = Vertices::new(names_of(complex), coordinates_of(complex));
+        let vertices = Vertices::new(Labels::of(complex), Coordinates::of(complex));
         let filtration = complex.filtration();
         let levels = Levels {
             num_simplices: complex.num_simplices(),
@@ -214,35 +214,4 @@ impl SimplexTree {
         };
         Ok((levels.thaw(filtration.is_some(), &vertices)?, vertices))
     }
-}
-
-/// What a complex in a file calls its vertices, by number.
-///
-/// Cost: a copy.
-#[must_use]
-pub fn names_of(complex: &impl Relations) -> Labels {
-    use sig_core::complex::columns::Labels as Columns;
-    match complex.labels() {
-        Columns::Numbered => Labels::Numbered(complex.num_vertices()),
-        Columns::Integers(labels) => Labels::Integers(labels.to_vec()),
-        Columns::Text { .. } => {
-            let vertices = (0..complex.num_vertices()).map(sig_core::VertexId::new);
-            Labels::Tokens(vertices.map(|vertex| crate::names::vertex_label(complex, vertex).into()).collect())
-        }
-    }
-}
-
-/// The coordinates of the vertices of a complex in a file, by number; `None` if there are none.
-///
-/// Cost: a copy.
-#[must_use]
-pub fn coordinates_of(complex: &impl Relations) -> Option<Coordinates> {
-    use sig_core::format::Column;
-    let section = complex.coordinates()?;
-    let values = match section.column {
-        Column::F32(values) => Scalars::F32(values.to_vec()),
-        Column::F64(values) => Scalars::F64(values.to_vec()),
-        _ => return None,
-    };
-    Some(Coordinates { dim: section.components as usize, values })
 }
