@@ -98,8 +98,10 @@ impl From<Distance> for Metric {
 
 #[derive(Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 enum Order {
-    /// By row of the input, or by label
+    /// `hilbert` for points, else `input`
     #[default]
+    Auto,
+    /// By row of the input, or by label
     Input,
     /// Along a Hilbert curve through the first three coordinates of points
     Hilbert,
@@ -158,7 +160,7 @@ impl Args {
             rows.sort_unstable();
         }
         let mut points = if rows.len() < points.len() { points.select(&rows) } else { points };
-        if self.order == Order::Hilbert {
+        if self.order != Order::Input {
             let order = points.hilbert_order();
             points = points.select(&order);
             rows = order.iter().map(|&index| rows[index]).collect();
