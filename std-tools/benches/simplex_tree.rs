@@ -243,7 +243,7 @@ fn contraction(peer: &Peer) -> Outcome<()> {
             let mut tree = SimplexTree::from_graph(&graph)?;
             tree.expand(sig_core::MAX_DIM)?;
             let before = tree.num_simplices();
-            let (time, contracted) = timed(|| tree.contract_all(1, LinkCondition::Required));
+            let (time, contracted) = timed(|| tree.contract_all(1, LinkCondition::Required, None));
             let done = contracted?.len();
             own.push(time / done as f64);
             summary =

@@ -106,14 +106,21 @@ impl SimplexTree {
 
     /// Contracts edges, those of least filtration value first, until there are `target` vertices or no edge is left that
     /// may be contracted; the smaller label is kept. Edges that fail the link condition are tried again after their ends
-    /// have changed, and all of them once more when no other is left, until that contracts none.
+    /// have changed, and all of them once more when no other is left, until that contracts none. `progress` is told how many
+    /// are contracted, of as many as the target takes.
     ///
     /// Cost: [`link_condition`](Self::link_condition) for each trial, [`contract`](Self::contract) for each success. Label
     /// lists are kept meanwhile, so that both depend on the stars of the two vertices and not on the complex.
     ///
     /// # Errors
     /// [`ContractError::Size`].
-    pub fn contract_all(&mut self, target: usize, condition: LinkCondition) -> Result<Vec<Contraction>, ContractError> {
+    pub fn contract_all(
+        &mut self,
+        target: usize,
+        condition: LinkCondition,
+        progress: Option<&dyn Fn(u64, u64)>,
+    ) -> Result<Vec<Contraction>, ContractError> {
+        let total = self.num_vertices().saturating_sub(target) as u64;
         let listed = self.has_label_lists();
         if !listed {
             self.keep_label_lists()?;
@@ -141,6 +148,9 @@ impl SimplexTree {
             }
             self.contract(a, b)?;
             contractions.push(Contraction { kept: a, removed: b, value });
+            if let Some(progress) = progress {
+                progress(contractions.len() as u64, total);
+            }
             for other in self.neighbours(a) {
                 let (a, b) = (a.min(other), a.max(other));
                 if let Some(edge) = self.find(&[a, b]) {
