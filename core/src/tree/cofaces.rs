@@ -95,11 +95,12 @@ impl Wanted<'_> {
 impl<I: Index> Tree<'_, I> {
     /// ⋆σ: the simplex and all simplices that have it as a face, in the order of their ids.
     ///
-    /// Cost: [`vertices`](Self::vertices); a pass over the neighbours of each vertex, or where they are many a search for
-    /// each of those of the vertex that has the fewest; then a pass over the children of each simplex whose word is made of common neighbours and the first
-    /// vertices of σ (in a flag complex each is a prefix of a coface), and a sequential write of what is below. The
-    /// queue of the scratch holds the common neighbours and such simplices of two dimensions; no marks are needed.
-    /// Without the file's lower neighbours the common ones are looked for among all vertices before σ's first one.
+    /// Cost: [`vertices`](Self::vertices); a pass over the neighbours of each vertex, or where they are many a search
+    /// for each of those of the vertex that has the fewest; then a pass over the children of each simplex whose word
+    /// is made of common neighbours and the first vertices of σ (in a flag complex each is a prefix of a coface), and
+    /// a sequential write of what is below. The queue of the scratch holds the common neighbours and such simplices
+    /// of two dimensions; no marks are needed. Without the file's lower neighbours the common ones are looked for
+    /// among all vertices before σ's first one.
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.
