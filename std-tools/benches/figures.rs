@@ -334,7 +334,12 @@ impl Bench {
             let row = self.witness_row(&points, 2_000, 0.06, max_dim, false)?;
             rows.push(Row { x: max_dim as f64, ..row });
         }
-        self.draw("figure-11-dimension", "Relaxed witness complexes, 2,000 landmarks among 20,000 points of S4, α² = 0.06", "k", &rows)
+        self.draw(
+            "figure-11-dimension",
+            "Relaxed witness complexes, 2,000 landmarks among 20,000 points of S4, α² = 0.06",
+            "k",
+            &rows,
+        )
     }
 
     /// Relaxed witness complexes for each number of landmarks with its relaxation.
