@@ -204,7 +204,10 @@ pub fn space(format: Option<SpaceFormat>, bytes: &[u8]) {
                 let (format, text) = written(&space, report.format);
                 let options = SpaceOptions { format: Some(format), ..SpaceOptions::default() };
                 let (copy, _) = read_space_bytes(text.as_bytes(), "copy", &options).expect("what was just written");
-                assert_eq!(copy, space, "written as {format}:\n{text}");
+                // Text without rows does not say how many coordinates they would have.
+                if !matches!(&space, Space::Points(points) if points.is_empty()) {
+                    assert_eq!(copy, space, "written as {format}:\n{text}");
+                }
             }
             Err(error) => assert!(!error.to_string().is_empty()),
         }
