@@ -114,7 +114,7 @@ impl Points {
 /// points give the same distances, to the last bit, on every machine and in every search strategy.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Metric {
-    /// √Σ (p − q)².
+    /// √Σ (p − q)²; infinite where the sum overflows, from about 1.3·10¹⁵⁴ on.
     #[default]
     Euclidean,
     /// max |p − q|.

@@ -60,3 +60,22 @@ fn golden_files_are_built_again() {
         assert!(fs::read(&built).unwrap() == fs::read(expected).unwrap(), "{}", expected.display());
     }
 }
+
+/// Text, JSON and files: whatever goes there.
+#[cfg(target_os = "linux")]
+#[test]
+fn that_standard_output_is_full_is_told_by_its_name() {
+    let golden = tests_dir().join("data/golden");
+    for arguments in [
+        &["tree", "words", "figure-16.sigc"][..],
+        &["info", "figure-16.sigc", "--json"],
+        &["expand", "figure-16.sigc", "--max-dim", "3", "-o", "-"],
+    ] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sig"));
+        let output = command.args(arguments).current_dir(&golden).stdout(full).stderr(Stdio::piped()).output().unwrap();
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
+        assert!(message.contains("standard output: cannot write: No space left"), "{arguments:?}: {message}");
+    }
+}

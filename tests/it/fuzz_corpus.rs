@@ -51,3 +51,13 @@ fn read_of_each_format() {
         replay(target, |bytes| fuzz::read(Some(format), bytes));
     }
 }
+
+#[test]
+fn space() {
+    replay("space", |bytes| fuzz::space(None, bytes));
+}
+
+#[test]
+fn space_of_each_format() {
+    replay("space_of_each_format", fuzz::space_of_each_format);
+}

@@ -6,6 +6,8 @@ use sig_core::{AnyComplex, AnyTree, with_complex, with_tree};
 use sig_tools::build::{BuildOptions, build};
 use sig_tools::incidence_graph::IncidenceGraph;
 pub use sig_tools::io::Format;
+pub use sig_tools::io::space::SpaceFormat;
+use sig_tools::io::space::{Space, SpaceOptions, read_space_bytes};
 use sig_tools::io::{ReadOptions, read_bytes};
 use sig_tools::soup::{Labels, Scalars, Soup};
 
@@ -184,5 +186,105 @@ fn build_in_both_ways(soup: &Soup) {
         (Ok(built), Ok(graph)) => assert_eq!(built.arrays, graph.build_sig()),
         (Err(_), _) => {}
         (Ok(_), Err(error)) => panic!("built, but not as an incidence graph: {error}"),
+    }
+}
+
+/// Reads the bytes as points, distances or a graph of the given format, or of the one that their content tells, and
+/// what was read again from the text in which it is written.
+///
+/// # Panics
+/// If what is read is no space, or is another one when it is read again.
+pub fn space(format: Option<SpaceFormat>, bytes: &[u8]) {
+    for is_graph in [false, true] {
+        let options = SpaceOptions { format, is_graph, ..SpaceOptions::default() };
+        match read_space_bytes(bytes, "input", &options) {
+            Ok((space, report)) => {
+                assert_eq!(format.unwrap_or(report.format), report.format);
+                assert_space(&space, bytes.len());
+                let (format, text) = written(&space, report.format);
+                let options = SpaceOptions { format: Some(format), ..SpaceOptions::default() };
+                let (copy, _) = read_space_bytes(text.as_bytes(), "copy", &options).expect("what was just written");
+                // Text without rows does not say how many coordinates they would have.
+                if !matches!(&space, Space::Points(points) if points.is_empty()) {
+                    assert_eq!(copy, space, "written as {format}:\n{text}");
+                }
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}
+
+/// The same, with the format chosen by the first byte.
+pub fn space_of_each_format(bytes: &[u8]) {
+    if let [first, rest @ ..] = bytes {
+        space(Some(SpaceFormat::ALL[usize::from(*first) % SpaceFormat::ALL.len()]), rest);
+    }
+}
+
+/// Finite numbers, distances and weights not negative, every vertex with a label, and no more points than the bytes can
+/// have held.
+fn assert_space(space: &Space, bytes: usize) {
+    let is_distance = |value: &f64| value.is_finite() && *value >= 0.0;
+    let points = match space {
+        Space::Points(points) => {
+            assert!(points.values().iter().all(|value| value.is_finite()));
+            assert_eq!(points.values().len(), points.len() * points.dim());
+            points.len()
+        }
+        Space::Distances(distances) => {
+            assert!((0..distances.len()).all(|point| distances.row(point).iter().all(is_distance)));
+            distances.len()
+        }
+        Space::Graph { graph, labels } => {
+            assert_eq!(labels.len(), graph.num_vertices(), "labels");
+            for vertex in 0..graph.num_vertices() {
+                let upper = graph.upper_neighbours(vertex);
+                assert!(upper.is_sorted_by(|a, b| a < b), "the neighbours of {vertex}: {upper:?}");
+                assert!(upper.first().is_none_or(|&first| first as usize > vertex));
+                assert!(upper.last().is_none_or(|&last| (last as usize) < graph.num_vertices()));
+            }
+            // The entries of a sparse matrix name points by number, and none need be named but the last.
+            graph.num_vertices().saturating_sub(1 << 22)
+        }
+    };
+    // Gzip takes about a thousandth at best.
+    assert!(points <= 1100 * (bytes + 1), "{points} points in {bytes} bytes");
+}
+
+/// A space in a text format that says all of it; of a graph that was read as `read` the one that can.
+fn written(space: &Space, read: SpaceFormat) -> (SpaceFormat, String) {
+    let row = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ") + "\n";
+    match space {
+        Space::Points(points) => {
+            (SpaceFormat::Points, (0..points.len()).map(|point| row(points.point(point))).collect())
+        }
+        Space::Distances(distances) => {
+            (SpaceFormat::Lower, (0..distances.len()).map(|point| row(distances.row(point))).collect())
+        }
+        Space::Graph { graph, labels } => {
+            let format = if read == SpaceFormat::Dipha { SpaceFormat::Sparse } else { read };
+            let label = |vertex: usize| match labels {
+                Labels::Numbered(_) => vertex.to_string(),
+                Labels::Integers(labels) => labels[vertex].to_string(),
+                // Quotes keep those that are part of the label.
+                Labels::Tokens(labels) => format!("\"{}\"", labels[vertex]),
+            };
+            let mut text = String::new();
+            for vertex in 0..graph.num_vertices() {
+                text += &match format {
+                    SpaceFormat::Gudhi => format!("0 {} {}\n", label(vertex), graph.vertex_weight(vertex)),
+                    SpaceFormat::Sparse if vertex + 1 < graph.num_vertices() => String::new(),
+                    SpaceFormat::Sparse => format!("{vertex} {vertex} 0\n"),
+                    _ => label(vertex) + "\n",
+                };
+                for edge in graph.edges_of(vertex) {
+                    let other = graph.upper_neighbours(vertex)[edge - graph.edges_of(vertex).start] as usize;
+                    let weight = if graph.is_weighted() { graph.weight(edge).to_string() } else { String::new() };
+                    let dim = if format == SpaceFormat::Gudhi { "1 " } else { "" };
+                    text += &format!("{dim}{} {} {weight}\n", label(vertex), label(other));
+                }
+            }
+            (format, text)
+        }
     }
 }

@@ -13,6 +13,7 @@ use super::{UsageError, output, progress, tree_input};
 ///
 /// Contracting the edge A,B makes B become A in every simplex; each simplex gets the least filtration value of those that
 /// become it. The homotopy type is kept if Lk(A) ∩ Lk(B) = Lk(AB), the link condition: edges that fail it are refused.
+/// A Rips complex that was cut off at its largest dimension has few edges that meet it: build it with a larger --max-dim.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

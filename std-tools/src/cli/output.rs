@@ -22,8 +22,10 @@ pub(super) fn is_stdout(path: &Path) -> bool {
 /// Writes data to standard output.
 pub(super) fn stdout(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
-    fill(&mut out)?;
-    out.flush()
+    fill(&mut out).and_then(|()| out.flush()).map_err(|error| match error.raw_os_error() {
+        Some(_) => io::Error::new(error.kind(), format!("standard output: cannot write: {error}")),
+        None => error,
+    })
 }
 
 /// Writes one JSON value on one line of standard output.

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use clap::ValueEnum;
+use clap::builder::RangedU64ValueParser;
 use serde::Serialize;
 use sig_tools::distances::Distances;
 use sig_tools::graph::Graph;
@@ -47,15 +48,15 @@ pub(super) struct Args {
 
     /// The largest distance of an edge. Points need one; by default all pairs of a distance matrix and all edges of a
     /// graph are taken
-    #[arg(short, long, value_name = "R", value_parser = radius)]
+    #[arg(short, long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<f64>,
 
     /// The distance between points; by default euclidean
     #[arg(short, long, value_enum)]
     metric: Option<Distance>,
 
-    /// Keep N points only, each the farthest from those before it, beginning with the first
-    #[arg(long, value_name = "N")]
+    /// Keep N points only, each the farthest from those before it, beginning with the first; all if there are fewer
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     farthest_point: Option<usize>,
 
     /// How vertices are numbered, which decides what lies together in the file
@@ -188,7 +189,9 @@ impl Args {
     fn of_graph(&self, graph: &Graph, labels: Labels) -> anyhow::Result<Skeleton> {
         let needs_weights = [(self.radius.is_some(), "--radius"), (self.filtration, "--filtration")];
         if let Some((_, option)) = needs_weights.into_iter().find(|(given, _)| *given && !graph.is_weighted()) {
-            return Err(UsageError(format!("{option} needs weights, and the edges of the input have none")).into());
+            let message =
+                "needs weights, and the edges of the input have none; --format says what it is if not a graph";
+            return Err(UsageError(format!("{option} {message}")).into());
         }
         if self.farthest_point.is_some() {
             let message = "--farthest-point needs the distances of all pairs; the input gives some of them";

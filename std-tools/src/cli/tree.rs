@@ -15,8 +15,8 @@ use sig_tools::with_view;
 
 use super::frozen_output::{self, FrozenTarget};
 use super::input::Input;
-use super::output;
 use super::tree_input::{self, Opened};
+use super::{UsageError, output};
 
 /// List a complex as the words of its simplex tree, or write it as another kind of file
 ///
@@ -161,6 +161,9 @@ fn words<V: Relations>(complex: &V, dim: Option<Dim>, order: Order, json: bool) 
         (None, Order::Dimension) => print(complex, complex.simplices(), json),
         (None, Order::DepthFirst) => print(complex, complex.depth_first(), json),
         (None, Order::Filtration) => {
+            if complex.filtration().is_none() {
+                output::log("sig: note: the file has no filtration values; the order is that by dimension");
+            }
             let mut order = vec![<V::Index as sig_core::Index>::ZERO; complex.num_simplices()];
             print(complex, complex.filtration_order(&mut order).map_err(io::Error::other)?, json)
         }
@@ -197,7 +200,10 @@ impl OfSimplex {
     }
 
     fn explained(&self, error: FindError) -> anyhow::Error {
-        anyhow::Error::new(error).context(self.file.display().to_string())
+        match error {
+            FindError::RepeatedVertex { .. } => UsageError(error.to_string()).into(),
+            error => anyhow::Error::new(error).context(self.file.display().to_string()),
+        }
     }
 
     fn children(&self, complex: &impl Relations) -> anyhow::Result<()> {

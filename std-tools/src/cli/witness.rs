@@ -57,7 +57,7 @@ pub(super) struct Args {
     target: FrozenTarget,
 
     /// The format of the points; by default it is found by content, then by name
-    #[arg(short, long, value_parser = super::named(SpaceFormat::ALL, SpaceFormat::name, SpaceFormat::description))]
+    #[arg(short, long, value_parser = super::named(SpaceFormat::OF_POINTS, SpaceFormat::name, SpaceFormat::description))]
     format: Option<SpaceFormat>,
 
     #[command(flatten)]

@@ -3,7 +3,10 @@
 use std::cell::RefCell;
 
 use sig_tools::frozen::FrozenTree;
+use sig_tools::generate::sphere4;
 use sig_tools::graph::Graph;
+use sig_tools::points::Metric;
+use sig_tools::proximity::{RadiusOptions, radius_graph};
 use sig_tools::simplex_tree::{
     ContractError, ExpandError, InsertError, LinkCondition, RelabelError, SimplexTree, WordError,
 };
@@ -271,4 +274,16 @@ fn what_is_blocked_does_not_enter_nor_do_its_cofaces() {
                 && all.values[word] == *value)
         );
     }
+}
+
+/// With filtration values; a Rips complex like those that are measured.
+#[test]
+fn a_simplex_takes_at_most_24_bytes() {
+    let options = RadiusOptions { weighted: true, ..RadiusOptions::default() };
+    let graph = radius_graph(&sphere4(3000, 1), Metric::Euclidean, 0.4, &options).unwrap();
+    let mut tree = SimplexTree::from_graph(&graph).unwrap();
+    tree.expand(5).unwrap();
+    assert!(tree.num_simplices() > 10_000, "{:?}", tree.counts());
+    let (bytes, most) = (tree.bytes(), 24 * tree.num_simplices());
+    assert!(bytes <= most, "{bytes} bytes of {most}, {:?}", tree.counts());
 }

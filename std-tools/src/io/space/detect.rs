@@ -89,12 +89,21 @@ fn by_shape(head: &[u8], length: Option<u64>, is_graph: bool) -> Option<SpaceFor
         // Names of columns, which only tables of points have.
         return Some(SpaceFormat::Points);
     }
+    // Any word may be a label, but hardly a fraction.
+    let is_label = |field: &Option<f64>| field.is_none_or(|label| label >= 0.0 && label.fract() == 0.0);
     if !rows.iter().all(is_number) {
-        let is_edge = |row: &Vec<Option<f64>>| row.len() == 2 || row.len() == 3 && row[2].is_some();
-        return rows.iter().all(is_edge).then_some(SpaceFormat::Edges);
+        let is_edge = |row: &Vec<Option<f64>>| match row[..] {
+            [a, b] | [a, b, Some(_)] => is_label(&a) && is_label(&b),
+            _ => false,
+        };
+        if rows.iter().all(is_edge) {
+            return Some(SpaceFormat::Edges);
+        }
+        // A slip among numbers: the reader will name its place.
+        let format = if is_graph { SpaceFormat::Edges } else { SpaceFormat::Points };
+        return rows.iter().any(|row| !row.is_empty() && is_number(row)).then_some(format);
     }
     rows.retain(|row| !row.is_empty());
-    let is_label = |field: &Option<f64>| field.is_some_and(|label| label >= 0.0 && label.fract() == 0.0);
     if is_graph && rows.iter().all(|row| matches!(row.len(), 2 | 3) && row[..2].iter().all(is_label)) {
         return Some(SpaceFormat::Edges);
     }
@@ -128,13 +137,17 @@ fn row(line: &[u8]) -> Option<Vec<Option<f64>>> {
     read.map_or(Some(Vec::new()), |_| Some(row))
 }
 
-/// Whether these are the first rows of a symmetric matrix with nothing on its diagonal. Points could look so too, but
-/// three of them hardly will.
+/// Whether these are the first rows of a square matrix with nothing on its diagonal that is symmetric, or whose other
+/// entries are all positive: then the reader will tell where it is not. Points could look so too, but three of them
+/// hardly will.
 fn is_matrix(rows: &[Vec<Option<f64>>]) -> bool {
     let at = |i: usize, j: usize| rows[i].get(j).copied().flatten();
     let columns = rows[0].len();
+    let mirrored = |i: usize| (0..i).all(|j| at(i, j) == at(j, i));
+    let positive = |i: usize| (0..columns).all(|j| i == j || at(i, j) > Some(0.0));
     columns >= 3
         && (rows.len() == columns || rows.len() < columns && rows.len() >= 2)
         && rows.iter().all(|row| row.len() == columns)
-        && (0..rows.len()).all(|i| at(i, i) == Some(0.0) && (0..i).all(|j| at(i, j) == at(j, i)))
+        && (0..rows.len()).all(|i| at(i, i) == Some(0.0))
+        && ((0..rows.len()).all(mirrored) || rows.len() == columns && (0..columns).all(positive))
 }

@@ -91,6 +91,9 @@ impl SpaceFormat {
         Self::Gudhi,
     ];
 
+    /// Those that give points by their coordinates.
+    pub const OF_POINTS: &'static [Self] = &[Self::Points, Self::Mesh, Self::Npy, Self::Pts];
+
     /// The name of the format on a command line.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -286,8 +286,10 @@ fn edges_keep_the_labels_of_their_vertices_in_order() {
 
 #[test]
 fn the_format_is_found_by_content_then_by_name_then_by_shape() {
-    let cases: [(&[u8], &str, SpaceFormat); 9] = [
+    let cases: [(&[u8], &str, SpaceFormat); 11] = [
         (b"0 1 0.5\n1 2 0.5\n", "x.txt", SpaceFormat::Points),
+        (b"0 1 2\n1 0 3\n2 3 0\n", "x.txt", SpaceFormat::Full),
+        (b"0 1 2\n1 0 3\n2 3 1\n", "x.txt", SpaceFormat::Points),
         (b"0 1 0.5\n1 2 0.5\n", "x.sparse", SpaceFormat::Sparse),
         (b"0 1 0.5\n1 2 0.5\n", "dir.npy/x.edges.gz", SpaceFormat::Edges),
         (b"a b 0.5\nb c 0.5\n", "x", SpaceFormat::Edges),
@@ -302,6 +304,33 @@ fn the_format_is_found_by_content_then_by_name_then_by_shape() {
     }
     let unknown = read_space_bytes(b"one two three four\n", "x", &SpaceOptions::default()).unwrap_err();
     assert!(unknown.to_string().contains("name it (--format), one of: points, mesh, npy"), "{unknown}");
+}
+
+/// A slip does not make an input one of no format, or of another: the place is told.
+#[test]
+fn a_slip_is_told_with_its_place_by_shape_too() {
+    let refused = |text: &str, is_graph| {
+        let options = SpaceOptions { is_graph, ..SpaceOptions::default() };
+        read_space_bytes(text.as_bytes(), "in.txt", &options).unwrap_err().to_string()
+    };
+    let coordinate = "expected a coordinate: a number";
+    for (text, is_graph, message) in [
+        ("0,1,2\n1,2,zz\n3,4,5\n", false, format!("in.txt:2:5: {coordinate}, found `zz`")),
+        ("x,y,z\n0,1,2\n1,zz,2\n", false, format!("in.txt:3:3: {coordinate}, found `zz`")),
+        ("0.5 1\n1.5 zz\n", false, format!("in.txt:2:5: {coordinate}, found `zz`")),
+        (
+            "0 1 0.5\n1 2 zz\n",
+            true,
+            "in.txt:2:5: expected a distance: a finite number, not negative, found `zz`".into(),
+        ),
+        (
+            "0 1 2\n1 0 3\n2 4 0\n",
+            false,
+            "in.txt:3:3: expected 3, the entry of row 2 and column 3, for distances are symmetric, found `4`".into(),
+        ),
+    ] {
+        assert_eq!(refused(text, is_graph), message, "{text}");
+    }
 }
 
 #[test]
