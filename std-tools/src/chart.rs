@@ -130,9 +130,12 @@ pub struct Bars {
     pub log: bool,
     /// The series, in the order of their colours.
     pub series: Vec<String>,
-    /// The groups: what stands below each, and the values with what stands above their bars.
-    pub groups: Vec<(String, Vec<Option<(f64, String)>>)>,
+    /// The groups: what stands below each, and a bar for each series.
+    pub groups: Vec<(String, Vec<Bar>)>,
 }
+
+/// A value and what stands above its bar; `None` where there is none.
+pub type Bar = Option<(f64, String)>;
 
 /// Draws panels of bars below one another, all with the same series.
 ///

@@ -117,7 +117,7 @@ impl<'a, S: TopSimplices> Session<'a, S> {
         // Top simplices come once each: the others are sorted behind them.
         for &Face { top, mask: own } in &self.tops {
             let face = Face { top, mask: all(self.structure.len(top)) };
-            if (least..=most).contains(&(face.mask ^ own).count_ones().try_into().unwrap_or(0)) {
+            if (least..=most).contains(&((face.mask ^ own).count_ones() as usize)) {
                 self.cofaces.push(Coface { key: 0, face, own });
             }
         }
@@ -305,7 +305,7 @@ fn subsets(mask: u32, count: usize) -> impl Iterator<Item = u32> {
             // The next number with as many bits (Gosper).
             let low = chosen & chosen.wrapping_neg();
             let next = chosen + low;
-            chosen = ((chosen ^ next) >> 2) / low | next;
+            chosen = (((chosen ^ next) >> 2) / low) | next;
             spread
         })
     })

@@ -15,11 +15,11 @@
 //! # Which one to take
 //!
 //! The SIG, unless memory decides and the complex is of a kind that a smaller one can hold. IA takes a third of its space
-//! on tetrahedral meshes and less on triangle meshes, and is the one to take where nothing is asked but the d-simplices,
+//! on tetrahedral meshes and half on triangle meshes, and is the one to take where nothing is asked but the d-simplices,
 //! their faces and their neighbours. Where stars of vertices are asked too, TS and NMIA take about three quarters of the
 //! space of the SIG and answer in time linear in the top simplices around a vertex; what they cannot do is to attach
-//! something to an edge or a triangle, for these have no number. The incidence graph takes more space than the SIG, and is
-//! faster where only the next dimension up is asked.
+//! something to an edge or a triangle, for these have no number. The incidence graph takes more space than the SIG on
+//! meshes, and is faster where only the next dimension up is asked. `benches/README.md` has the figures.
 
 mod around;
 pub mod conjecture;

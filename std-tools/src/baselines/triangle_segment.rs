@@ -150,7 +150,8 @@ impl<I: Index> TopSimplices for TriangleSegment<I> {
     fn incident(&self, face: Face, marks: &mut Marks, found: &mut Vec<Face>) {
         match face.mask.count_ones() as usize {
             1 => {
-                self.gather_at_vertex(self.vertex(face.top, face.mask.trailing_zeros() as usize) as usize, marks, found)
+                let vertex = self.vertex(face.top, face.mask.trailing_zeros() as usize);
+                self.gather_at_vertex(vertex as usize, marks, found);
             }
             2 if self.len(face.top) == 3 => self.triangles.gather_at_edge(face, found),
             _ => found.push(face),
