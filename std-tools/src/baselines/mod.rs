@@ -26,6 +26,7 @@ pub mod conjecture;
 mod faces;
 pub mod formulas;
 mod indexed;
+mod lists;
 mod nmia;
 mod refusal;
 mod sig;

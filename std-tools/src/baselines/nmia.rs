@@ -5,6 +5,7 @@ use sig_core::{Dim, Index};
 
 use super::around::Around;
 use super::faces::Marks;
+use super::lists::Lists;
 use super::tops::check_width;
 use super::{Face, Refusal, TopSimplices, Tops, array_bytes};
 use crate::build::{index, narrow};
@@ -20,11 +21,9 @@ use crate::soup::{Labels, Soup};
 /// those around the vertex, around the edge, or around an edge of the triangle.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct NonManifoldIndexed<I> {
-    /// Where the list of each vertex starts; it ends where the next one starts.
-    starts: Vec<I>,
     /// For each vertex a top simplex of each component of its restricted star. Numbers up to n_0 are vertices, then come
     /// wire edges, triangles, tetrahedra.
-    components: Vec<I>,
+    components: Lists<I>,
     /// The ends of the wire edges.
     wires: Vec<I>,
     larger: Around<I>,
@@ -47,37 +46,22 @@ impl<I: Index> NonManifoldIndexed<I> {
             let ends = wires.iter().enumerate();
             ends.map(|(at, vertex)| (narrow(vertex.to_usize()), narrow(num_vertices + at / 2)))
         };
-        let mut counts = vec![0_usize; num_vertices + 1];
-        at_wires().chain(parts.pairs.iter().copied()).for_each(|(vertex, _)| counts[vertex as usize + 1] += 1);
-        (0..num_vertices).for_each(|vertex| counts[vertex + 1] += counts[vertex]);
-        check_width::<I>(counts[num_vertices])?;
-        let starts: Vec<I> = counts[..num_vertices].iter().map(|&start| index(start)).collect();
-        let mut components = vec![I::STOP; counts[num_vertices]];
-        for (vertex, top) in at_wires().chain(parts.pairs.iter().copied()) {
-            let place = &mut counts[vertex as usize];
-            components[*place] = index(top as usize);
-            *place += 1;
-        }
-        Ok(Self { starts, components, wires, larger })
+        let components = Lists::new(num_vertices, at_wires().chain(parts.pairs.iter().copied()))?;
+        Ok(Self { components, wires, larger })
     }
 
     /// The top simplices as a list that [`build`](crate::build::build()) takes, vertices by number.
     #[must_use]
     pub fn to_soup(&self) -> Soup {
-        let mut soup = Soup::new(Labels::Numbered(self.starts.len()), true);
+        let mut soup = Soup::new(Labels::Numbered(self.components.num_vertices()), true);
         let (triangles, tetrahedra) = self.larger.words();
         let numbers = |corners: &[I]| corners.iter().map(|corner| narrow(corner.to_usize())).collect();
         soup.simplices = vec![Vec::new(), numbers(&self.wires), numbers(triangles), numbers(tetrahedra)];
         soup
     }
 
-    fn list(&self, vertex: usize) -> &[I] {
-        let start = |vertex| self.starts.get(vertex).map_or(self.components.len(), |start: &I| start.to_usize());
-        &self.components[start(vertex)..start(vertex + 1)]
-    }
-
     fn gather_at_vertex(&self, vertex: usize, marks: &mut Marks, found: &mut Vec<Face>) {
-        for top in self.list(vertex).iter().map(|top| top.to_usize()) {
+        for top in self.components.of(vertex).iter().map(|top| top.to_usize()) {
             if top < self.larger.first() {
                 let first = self.vertex(narrow(top), 0) as usize;
                 found.push(Face { top: narrow(top), mask: if first == vertex { 0b01 } else { 0b10 } });
@@ -107,20 +91,21 @@ impl<I: Index> NonManifoldIndexed<I> {
 
 impl<I: Index> TopSimplices for NonManifoldIndexed<I> {
     fn dim(&self) -> Option<Dim> {
-        let lower = if self.wires.is_empty() { (!self.starts.is_empty()).then_some(0) } else { Some(1) };
+        let lower = if self.wires.is_empty() { (self.components.num_vertices() > 0).then_some(0) } else { Some(1) };
         self.larger.dim().or(lower)
     }
 
     fn storage(&self) -> Storage {
         let Around { corners, neighbours, .. } = &self.larger;
-        let lists = self.starts.len() + self.components.len() + self.wires.len();
+        let lists = self.components.num_integers() + self.wires.len();
         Storage { integers: lists + corners.len() + neighbours.len(), bits: self.num_marks() }
     }
 
     fn bytes(&self) -> usize {
         let Around { corners, neighbours, .. } = &self.larger;
-        let arrays = [&self.starts, &self.components, &self.wires, corners, neighbours];
-        arrays.into_iter().map(|array| array_bytes(array)).sum::<usize>() + self.num_marks().div_ceil(8)
+        let arrays = [&self.wires, corners, neighbours];
+        let arrays: usize = arrays.into_iter().map(|array| array_bytes(array)).sum();
+        self.components.bytes() + arrays + self.num_marks().div_ceil(8)
     }
 
     fn num_marks(&self) -> usize {
@@ -129,7 +114,7 @@ impl<I: Index> TopSimplices for NonManifoldIndexed<I> {
 
     fn len(&self, top: u32) -> usize {
         let top = top as usize;
-        if top < self.starts.len() {
+        if top < self.components.num_vertices() {
             1
         } else if top < self.larger.first() {
             2
@@ -140,17 +125,17 @@ impl<I: Index> TopSimplices for NonManifoldIndexed<I> {
 
     fn vertex(&self, top: u32, position: usize) -> u32 {
         let top = top as usize;
-        narrow(if top < self.starts.len() {
+        narrow(if top < self.components.num_vertices() {
             top
         } else if top < self.larger.first() {
-            self.wires[2 * (top - self.starts.len()) + position].to_usize()
+            self.wires[2 * (top - self.components.num_vertices()) + position].to_usize()
         } else {
             self.larger.corners_of(top)[position].to_usize()
         })
     }
 
     fn vertex_face(&self, vertex: u32) -> Option<Face> {
-        ((vertex as usize) < self.starts.len()).then_some(Face { top: vertex, mask: 1 })
+        ((vertex as usize) < self.components.num_vertices()).then_some(Face { top: vertex, mask: 1 })
     }
 
     fn incident(&self, face: Face, marks: &mut Marks, found: &mut Vec<Face>) {

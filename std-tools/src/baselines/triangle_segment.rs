@@ -5,6 +5,7 @@ use sig_core::{Dim, Index};
 
 use super::around::Around;
 use super::faces::Marks;
+use super::lists::Lists;
 use super::tops::check_width;
 use super::{Face, Refusal, TopSimplices, Tops, array_bytes};
 use crate::build::{index, narrow};
@@ -19,10 +20,8 @@ use crate::soup::{Labels, Soup};
 /// time linear in them.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct TriangleSegment<I> {
-    /// Where the list of each vertex starts; it ends where the next one starts.
-    starts: Vec<I>,
     /// For each vertex the vertices at the other ends of wire edges, then triangles, each its number and n_0.
-    lists: Vec<I>,
+    lists: Lists<I>,
     triangles: Around<I>,
 }
 
@@ -40,28 +39,18 @@ impl<I: Index> TriangleSegment<I> {
         check_width::<u32>(num_vertices + triangles + corners)?;
         let (triangles, parts) = Around::new(tops, num_vertices);
         let ends = || wires.chunks_exact(2).flat_map(|ends| [(ends[0], ends[1]), (ends[1], ends[0])]);
-        let mut counts = vec![0_usize; num_vertices + 1];
-        ends().chain(parts.pairs.iter().copied()).for_each(|(vertex, _)| counts[vertex as usize + 1] += 1);
-        (0..num_vertices).for_each(|vertex| counts[vertex + 1] += counts[vertex]);
-        check_width::<I>(counts[num_vertices])?;
-        let starts: Vec<I> = counts[..num_vertices].iter().map(|&start| index(start)).collect();
-        let mut lists = vec![I::STOP; counts[num_vertices]];
-        for (vertex, entry) in ends().chain(parts.pairs.iter().copied()) {
-            let place = &mut counts[vertex as usize];
-            lists[*place] = index(entry as usize);
-            *place += 1;
-        }
-        Ok(Self { starts, lists, triangles })
+        let lists = Lists::new(num_vertices, ends().chain(parts.pairs.iter().copied()))?;
+        Ok(Self { lists, triangles })
     }
 
     /// The top simplices as a list that [`build`](crate::build::build()) takes, vertices by number.
     #[must_use]
     pub fn to_soup(&self) -> Soup {
-        let mut soup = Soup::new(Labels::Numbered(self.starts.len()), true);
+        let mut soup = Soup::new(Labels::Numbered(self.lists.num_vertices()), true);
         soup.simplices = vec![Vec::new(); 3];
-        for vertex in 0..self.starts.len() {
-            for other in self.list(vertex).iter().map(|other| other.to_usize()) {
-                if vertex < other && other < self.starts.len() {
+        for vertex in 0..self.lists.num_vertices() {
+            for other in self.lists.of(vertex).iter().map(|other| other.to_usize()) {
+                if vertex < other && other < self.lists.num_vertices() {
                     soup.simplices[1].extend([narrow(vertex), narrow(other)]);
                 }
             }
@@ -70,23 +59,15 @@ impl<I: Index> TriangleSegment<I> {
         soup
     }
 
-    fn list_from(&self, vertex: usize) -> usize {
-        self.starts.get(vertex).map_or(self.lists.len(), |start| start.to_usize())
-    }
-
-    fn list(&self, vertex: usize) -> &[I] {
-        &self.lists[self.list_from(vertex)..self.list_from(vertex + 1)]
-    }
-
     /// The number from which on a number stands for a wire edge, as an entry of the lists.
     fn first_wire(&self) -> usize {
-        self.starts.len() + self.triangles.count()
+        self.lists.num_vertices() + self.triangles.count()
     }
 
     fn gather_at_vertex(&self, vertex: usize, marks: &mut Marks, found: &mut Vec<Face>) {
-        let start = self.list_from(vertex);
-        for (number, entry) in self.list(vertex).iter().enumerate() {
-            if entry.to_usize() < self.starts.len() {
+        let start = self.lists.start(vertex);
+        for (number, entry) in self.lists.of(vertex).iter().enumerate() {
+            if entry.to_usize() < self.lists.num_vertices() {
                 found.push(Face { top: narrow(self.first_wire() + start + number), mask: 1 });
             } else {
                 self.triangles.gather_at_vertex(entry.to_usize(), index(vertex), marks, found);
@@ -97,20 +78,19 @@ impl<I: Index> TriangleSegment<I> {
 
 impl<I: Index> TopSimplices for TriangleSegment<I> {
     fn dim(&self) -> Option<Dim> {
-        let lower = if self.lists.is_empty() { (!self.starts.is_empty()).then_some(0) } else { Some(1) };
+        let lower = if self.lists.num_entries() == 0 { (self.lists.num_vertices() > 0).then_some(0) } else { Some(1) };
         self.triangles.dim().or(lower)
     }
 
     fn storage(&self) -> Storage {
         let Around { corners, neighbours, .. } = &self.triangles;
-        let integers = self.starts.len() + self.lists.len() + corners.len() + neighbours.len();
+        let integers = self.lists.num_integers() + corners.len() + neighbours.len();
         Storage { integers, bits: self.num_marks() }
     }
 
     fn bytes(&self) -> usize {
         let Around { corners, neighbours, .. } = &self.triangles;
-        let lists = array_bytes(&self.starts) + array_bytes(&self.lists);
-        lists + array_bytes(corners) + array_bytes(neighbours) + self.num_marks().div_ceil(8)
+        self.lists.bytes() + array_bytes(corners) + array_bytes(neighbours) + self.num_marks().div_ceil(8)
     }
 
     fn num_marks(&self) -> usize {
@@ -119,7 +99,7 @@ impl<I: Index> TopSimplices for TriangleSegment<I> {
 
     fn len(&self, top: u32) -> usize {
         let top = top as usize;
-        if top < self.starts.len() {
+        if top < self.lists.num_vertices() {
             1
         } else if top < self.first_wire() {
             3
@@ -130,21 +110,19 @@ impl<I: Index> TopSimplices for TriangleSegment<I> {
 
     fn vertex(&self, top: u32, position: usize) -> u32 {
         let top = top as usize;
-        if top < self.starts.len() {
+        if top < self.lists.num_vertices() {
             return narrow(top);
         }
         match top.checked_sub(self.first_wire()) {
             None => narrow(self.triangles.corners_of(top)[position].to_usize()),
-            // The vertex in whose list the edge stands is the last that starts there or before.
-            Some(entry) if position == 0 => {
-                narrow(self.starts.partition_point(|start| start.to_usize() <= entry).saturating_sub(1))
-            }
-            Some(entry) => narrow(self.lists[entry].to_usize()),
+            // A wire edge, by its place in the list of one of its ends.
+            Some(place) if position == 0 => narrow(self.lists.owner(place)),
+            Some(place) => narrow(self.lists.entry(place).to_usize()),
         }
     }
 
     fn vertex_face(&self, vertex: u32) -> Option<Face> {
-        ((vertex as usize) < self.starts.len()).then_some(Face { top: vertex, mask: 1 })
+        ((vertex as usize) < self.lists.num_vertices()).then_some(Face { top: vertex, mask: 1 })
     }
 
     fn incident(&self, face: Face, marks: &mut Marks, found: &mut Vec<Face>) {
