@@ -184,14 +184,15 @@ fn by_definition(words: &[Word]) -> String {
 }
 
 /// The classes of the top simplices around a simplex: two of one dimension belong together if they share a facet that
-/// contains it.
+/// contains it, and is not it.
 fn clusters(simplex: &[u32], around: &[&Word]) -> usize {
     let mut classes: Vec<usize> = (0..around.len()).collect();
     for i in 0..around.len() {
         for j in 0..i {
             let shared: Word = around[i].iter().copied().filter(|vertex| around[j].contains(vertex)).collect();
             let len = around[i].len();
-            if len == around[j].len() && shared.len() + 1 == len && is_face(simplex, &shared) {
+            let is_shared = shared.len() > simplex.len() && is_face(simplex, &shared);
+            if len == around[j].len() && shared.len() + 1 == len && is_shared {
                 let (from, to) = (classes[i], classes[j]);
                 classes.iter_mut().filter(|class| **class == from).for_each(|class| *class = to);
             }
