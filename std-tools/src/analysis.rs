@@ -103,18 +103,18 @@ fn h_components<I: Index>(complex: &Complex<'_, I>, top_simplices: &[usize]) -> 
 }
 
 /// Disjoint sets of numbers, each with its least as root.
-struct Classes<I> {
+pub(crate) struct Classes<I> {
     /// A number of the same class, less than this one unless it is the root.
     parents: Vec<I>,
 }
 
 impl<I: Index> Classes<I> {
-    fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self { parents: (0..count).map(|number| I::from_usize(number).unwrap_or(I::STOP)).collect() }
     }
 
     /// The root of a number that is there. Halves the path to it.
-    fn root(&mut self, mut number: usize) -> usize {
+    pub(crate) fn root(&mut self, mut number: usize) -> usize {
         loop {
             let parent = self.parents[number];
             let grandparent = self.parents[parent.to_usize()];
@@ -127,7 +127,7 @@ impl<I: Index> Classes<I> {
     }
 
     /// Joins the classes of two numbers; whether they were different. Numbers that are not there have no class.
-    fn join(&mut self, a: usize, b: usize) -> bool {
+    pub(crate) fn join(&mut self, a: usize, b: usize) -> bool {
         if a.max(b) >= self.parents.len() {
             return false;
         }

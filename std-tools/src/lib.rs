@@ -17,6 +17,7 @@
 //! | a weighted graph | [`graph`] | [`graph::Graph`] |
 //! | simplices to arrays in canonical order | [`mod@build`] | [`build::build`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
+//! | structures to compare the SIG with | [`baselines`] | [`baselines::Structure`] |
 //! | cliques of a graph to a simplex tree | [`mod@flag`] | [`flag::expand`], [`flag::estimate`] |
 //! | landmarks and witnesses to a simplex tree | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
 //! | a simplex tree that changes | [`mod@simplex_tree`] | [`simplex_tree::SimplexTree`] |
@@ -48,6 +49,7 @@
 //! ```
 
 pub mod analysis;
+pub mod baselines;
 pub mod build;
 pub mod combinatorial_map;
 pub mod contract;

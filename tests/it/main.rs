@@ -1,5 +1,6 @@
 //! One binary for all tests that cross crates: a module is about one behaviour.
 
+mod baselines;
 mod builder;
 mod format;
 mod format_book;

@@ -1,6 +1,7 @@
 //! A view compared with the oracle: every relation, of every simplex.
 
 use sig_core::{Complex, Index, Relations, Scratch, SimplexId, Tree, VertexId, mark_words};
+use sig_tools::baselines::Structure;
 
 use crate::oracle::Oracle;
 use crate::paper;
@@ -112,6 +113,59 @@ pub fn assert_tree_conforms<I: Index>(tree: &Tree<'_, I>, oracle: &Oracle) {
     if let Some(few) = oracle.len().checked_sub(1) {
         assert!(tree.filtration_order(&mut order[..few]).is_err());
     }
+}
+
+/// Compares every relation of every simplex of a structure, however it names them, with its definition.
+///
+/// # Panics
+/// Where the two differ.
+pub fn assert_structure_conforms<S: Structure>(structure: &mut S, oracle: &Oracle) {
+    assert_eq!(structure.dim(), oracle.dims().checked_sub(1));
+    let mut found = Vec::new();
+    for simplex in 0..oracle.len() {
+        let word = oracle.word(simplex);
+        let own = structure.find(&vertex_ids(word)).unwrap_or_else(|| panic!("{word:?} is not found"));
+        assert_eq!(word_of(structure, own), word);
+        // Each name of a simplex in an answer is as good as the one by which it was found.
+        structure.star(own, &mut found);
+        for name in [own].into_iter().chain(found.iter().copied().filter(|_| oracle.dim(simplex) == 0).take(4)) {
+            let word = word_of(structure, name);
+            let simplex = oracle.find(&word).unwrap_or_else(|| panic!("{word:?} is no simplex"));
+            assert_structure(structure, oracle, simplex, name);
+        }
+    }
+    for missing in [vec![], vec![oracle.of_dim(0).len()], (0..oracle.dims() + 1).collect()] {
+        assert!(structure.find(&vertex_ids(&missing)).is_none(), "{missing:?} is found");
+    }
+}
+
+fn word_of<S: Structure>(structure: &S, simplex: S::Simplex) -> Vec<usize> {
+    let mut word = Vec::new();
+    structure.vertices(simplex, &mut word);
+    word.into_iter().map(VertexId::index).collect()
+}
+
+fn assert_structure<S: Structure>(structure: &mut S, oracle: &Oracle, simplex: usize, name: S::Simplex) {
+    let word = oracle.word(simplex);
+    let mut found = vec![name; 3];
+    let ids = |structure: &S, found: &[S::Simplex]| {
+        let id = |&name: &S::Simplex| oracle.find(&word_of(structure, name)).expect("an answer is a simplex");
+        let mut ids: Vec<usize> = found.iter().map(id).collect();
+        ids.sort_unstable();
+        ids
+    };
+    for dim in 0..oracle.dims() + 2 {
+        structure.boundary(name, dim, &mut found);
+        assert_eq!(ids(structure, &found), oracle.boundary(simplex, dim), "{dim}-faces of {word:?}");
+        structure.coboundary(name, dim, &mut found);
+        assert_eq!(ids(structure, &found), oracle.coboundary(simplex, dim), "{dim}-cofaces of {word:?}");
+    }
+    structure.star(name, &mut found);
+    assert_eq!(ids(structure, &found), oracle.star(simplex), "star of {word:?}");
+    structure.link(name, &mut found);
+    assert_eq!(ids(structure, &found), oracle.link(simplex), "link of {word:?}");
+    structure.adjacency(name, &mut found);
+    assert_eq!(ids(structure, &found), oracle.adjacency(simplex), "simplices adjacent to {word:?}");
 }
 
 /// What complexes and trees have in common.

@@ -316,19 +316,41 @@ pub fn build(soup: Soup, options: &BuildOptions<'_>) -> Result<Built, BuildError
     build_up_to(soup, options, u32::STOP as usize - 1)
 }
 
-/// Builds with 32-bit indices if there are up to `most_narrow` simplices.
-fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Result<Built, BuildError> {
+/// The arrays of all faces of the simplices of `soup`, without pointers, lists and flags: what an incidence graph starts
+/// from.
+pub(crate) fn faces(soup: Soup, options: &BuildOptions<'_>) -> Result<Arrays, BuildError> {
+    let meter = Meter::new(options.progress);
+    let (chunks, ..) = find_faces(soup, options, &meter)?;
+    Ok(if chunks.num_simplices() < u32::STOP as usize {
+        assemble::assemble::<u32>(chunks, &meter).0.into()
+    } else {
+        assemble::assemble::<u64>(chunks, &meter).0.into()
+    })
+}
+
+/// All faces of the simplices of a soup, the order of its vertices, the number of simplices that it lists, and its labels
+/// and coordinates.
+type FoundFaces = (levels::Chunks, order::Order, usize, Labels, Option<Coordinates>);
+
+fn find_faces(soup: Soup, options: &BuildOptions<'_>, meter: &Meter<'_>) -> Result<FoundFaces, BuildError> {
     let used = words::check(&soup.simplices, soup.labels.len())?;
     let limit = Limit::new(&soup, options)?;
-    let meter = Meter::new(options.progress);
     let Soup { labels, declared, coordinates, simplices } = soup;
     let keep_unused = declared && options.unused == Unused::Keep;
     let order = number_vertices(&labels, coordinates.as_ref(), &simplices, &used, keep_unused, options.order)?;
     let num_listed = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).sum();
-    let words = words::sort(simplices, &order, &meter)?;
+    let words = words::sort(simplices, &order, meter)?;
     let listed_vertices = words::listed_vertices(&words, &used, &order);
-    let chunks = levels::find(&words, order.num_vertices(), listed_vertices, &limit, &meter)?;
-    drop(words);
+    let chunks = levels::find(&words, order.num_vertices(), listed_vertices, &limit, meter)?;
+    Ok((chunks, order, num_listed, labels, coordinates))
+}
+
+/// Builds with 32-bit indices if there are up to `most_narrow` simplices.
+fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Result<Built, BuildError> {
+    let meter = Meter::new(options.progress);
+    let declared = soup.declared;
+    let keep_unused = declared && options.unused == Unused::Keep;
+    let (chunks, order, num_listed, labels, coordinates) = find_faces(soup, options, &meter)?;
     let (arrays, parity, counts) = if chunks.num_simplices() <= most_narrow {
         let (skeleton, listed) = assemble::assemble::<u32>(chunks, &meter);
         finish(skeleton, &listed, &meter)
