@@ -15,7 +15,7 @@
 //!
 //! One file a thing: `build` makes the map of a simplicial complex, or names the simplex that forbids it; `words` has the
 //! tables for that; `orbits` walks the cells; `relations` answers for boundary, co-boundary and adjacency; `simplicial` goes
-//! back to the complex; `operators` removes and contracts edges of 2-maps; `pyramid` stacks 2-maps that come from one another
+//! back to the complex; `structure` is the map as one of the structures that are compared; `operators` removes and contracts edges of 2-maps; `pyramid` stacks 2-maps that come from one another
 //! by kernels of such edges, `kernels` chooses them.
 //!
 //! # Storage
@@ -34,6 +34,7 @@ mod orbits;
 mod pyramid;
 mod relations;
 mod simplicial;
+mod structure;
 mod words;
 
 use std::fmt;
@@ -45,6 +46,7 @@ pub use operators::OperatorError;
 pub use orbits::Walk;
 pub use pyramid::Pyramid;
 pub use simplicial::NotSimplicial;
+pub use structure::Darts;
 
 /// The number of a dart in its map, from 0.
 ///

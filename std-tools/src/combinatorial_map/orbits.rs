@@ -15,6 +15,11 @@ pub struct Walk {
     pub(super) orbit: Vec<u32>,
     /// The cells of the answer.
     pub(super) found: Vec<SimplexId>,
+    /// Cells that are to be kept out of it.
+    passed_over: Vec<u32>,
+    /// Darts to walk from later, and vertices to tell from others.
+    pub(super) starts: Vec<u32>,
+    pub(super) own: Vec<u32>,
 }
 
 impl Walk {
@@ -29,24 +34,26 @@ impl Walk {
         self.found.clear();
     }
 
-    /// Adds a cell to the answer, if it is new in it.
+    /// Adds a cell to the answer, if it is new in it and not passed over.
     pub(super) fn add(&mut self, cell: u32) {
         if self.cells.set(cell) {
             self.found.push(SimplexId::new(cell as usize));
         }
     }
 
-    /// Takes a cell as seen without adding it to the answer.
+    /// Keeps a cell out of the answer.
     pub(super) fn pass_over(&mut self, cell: u32) {
-        self.cells.set(cell);
+        if self.cells.set(cell) {
+            self.passed_over.push(cell);
+        }
     }
 
-    /// Ends an answer: clears its marks and that of a cell that was passed over.
-    pub(super) fn finish(&mut self, passed_over: Option<u32>) -> &[SimplexId] {
+    /// Ends an answer: clears its marks.
+    pub(super) fn finish(&mut self) -> &[SimplexId] {
         for cell in &self.found {
             self.cells.clear(cell.index());
         }
-        if let Some(cell) = passed_over {
+        for cell in self.passed_over.drain(..) {
             self.cells.clear(cell as usize);
         }
         &self.found

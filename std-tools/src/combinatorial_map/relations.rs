@@ -16,7 +16,7 @@ impl CombinatorialMap {
         {
             self.add_boundary(dart.0, p, q, walk);
         }
-        walk.finish(None)
+        walk.finish()
     }
 
     /// Adds the cells of dimension q in the boundary of the p-cell of a dart.
@@ -45,7 +45,63 @@ impl CombinatorialMap {
                 walk.add(self.c(q, walk.orbit[at]));
             }
         }
-        walk.finish(None)
+        walk.finish()
+    }
+
+    /// A p-cell and all cells whose boundary contains it, each once, in no particular order; none for a cell that is deleted
+    /// or past the end.
+    ///
+    /// Cost: O(n) for each dart of the cell.
+    pub fn star<'w>(&self, cell: SimplexId, walk: &'w mut Walk) -> &'w [SimplexId] {
+        walk.start();
+        if let (Some(dart), Some(p)) = (self.dart_of(cell), self.dim_of(cell)) {
+            self.walk_cell(dart.0, p, walk);
+            for at in 0..walk.orbit.len() {
+                (p..=self.dim).for_each(|q| walk.add(self.c(q, walk.orbit[at])));
+            }
+        }
+        walk.finish()
+    }
+
+    /// The cells without a vertex of a cell in the boundaries of the n-cells around it, each once, in no particular order: the
+    /// link, in a map that is a simplicial complex. None for a cell that is deleted or past the end.
+    ///
+    /// Cost: O(n) for each dart of the n-cells around the cell.
+    pub fn link<'w>(&self, cell: SimplexId, walk: &'w mut Walk) -> &'w [SimplexId] {
+        let n = self.dim;
+        let (Some(dart), Some(p)) = (self.dart_of(cell), self.dim_of(cell)) else { return &[] };
+        walk.own.clear();
+        walk.own.push(self.c(0, dart.0));
+        if p > 0 {
+            self.boundary(cell, 0, walk);
+            walk.own.clear();
+            walk.own.extend(walk.found.iter().map(|vertex| self.c(0, self.dart_of[vertex.index()])));
+        }
+        self.coboundary(cell, n, walk);
+        let (mut tops, own) = (std::mem::take(&mut walk.starts), std::mem::take(&mut walk.own));
+        tops.clear();
+        tops.extend(walk.found.iter().map(|top| self.dart_of[top.index()]));
+        let is_own = |dart: u32| own.contains(&self.c(0, dart));
+        walk.start();
+        for &top in &tops {
+            self.walk_boundary(top, n, walk);
+            // A cell in the boundary of an n-cell has a dart there for each of its vertices; but of an edge of a face of a
+            // 2-map there is one only, and the other end is that of the next.
+            for at in 0..walk.orbit.len() {
+                let dart = walk.orbit[at];
+                if is_own(dart) {
+                    (0..n).for_each(|q| walk.pass_over(self.c(q, dart)));
+                }
+                if is_own(self.b(1, dart)) {
+                    walk.pass_over(self.c(1, dart));
+                }
+            }
+            for at in 0..walk.orbit.len() {
+                (0..n).for_each(|q| walk.add(self.c(q, walk.orbit[at])));
+            }
+        }
+        (walk.starts, walk.own) = (tops, own);
+        walk.finish()
     }
 
     /// A_p: for p > 0 the other p-cells that share a (p−1)-cell of their boundaries with a p-cell; for p = 0 the other ends of
@@ -55,9 +111,8 @@ impl CombinatorialMap {
     /// of the cell, or of the vertex.
     pub fn adjacency<'w>(&self, cell: SimplexId, walk: &'w mut Walk) -> &'w [SimplexId] {
         walk.start();
-        let (Some(dart), Some(p)) = (self.dart_of(cell), self.dim_of(cell)) else { return walk.finish(None) };
-        let itself = self.c(p, dart.0);
-        walk.pass_over(itself);
+        let (Some(dart), Some(p)) = (self.dart_of(cell), self.dim_of(cell)) else { return walk.finish() };
+        walk.pass_over(self.c(p, dart.0));
         match p {
             0 => {
                 self.walk_cell(dart.0, 0, walk);
@@ -73,13 +128,14 @@ impl CombinatorialMap {
             }
             _ => self.add_adjacent(dart.0, p, walk),
         }
-        walk.finish(Some(itself))
+        walk.finish()
     }
 
     /// Adds the p-cells around the facets of a p-cell, 0 < p < n.
     fn add_adjacent(&self, dart: u32, p: Dim, walk: &mut Walk) {
-        // One dart of each facet: they are few, and the walks around them need the memory.
-        let mut facets: Vec<u32> = Vec::new();
+        // One dart of each facet: they are few, and the walks around them need the orbit's memory.
+        let mut facets = std::mem::take(&mut walk.starts);
+        facets.clear();
         self.walk_boundary(dart, p, walk);
         let ends = (p == 1).then(|| self.b(1, dart));
         for &at in walk.orbit.iter().chain(&ends) {
@@ -87,11 +143,12 @@ impl CombinatorialMap {
                 facets.push(at);
             }
         }
-        for facet in facets {
+        for &facet in &facets {
             self.walk_cell(facet, p - 1, walk);
             for at in 0..walk.orbit.len() {
                 walk.add(self.c(p, walk.orbit[at]));
             }
         }
+        walk.starts = facets;
     }
 }
