@@ -23,6 +23,7 @@
 //! | a simplex tree in level order | [`frozen`] | [`frozen::FrozenTree`] |
 //! | a simplex tree to the whole arrays | [`mod@build`] | [`build::complete`] |
 //! | contract edges of the whole arrays | [`mod@contract`] | [`contract::contract`] |
+//! | cell complexes that change | [`mod@cells`] | [`cells::CellComplex`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
@@ -48,6 +49,7 @@
 
 pub mod analysis;
 pub mod build;
+pub mod cells;
 pub mod contract;
 pub mod distances;
 pub mod export;
