@@ -1,47 +1,25 @@
 //! Removal and contraction of edges of 2-maps.
 
-use std::collections::BTreeMap;
-
 use proptest::prelude::*;
 use proptest::sample::Index as Pick;
-use sig_core::SimplexId;
+use sig_core::{CellId, SimplexId};
+use sig_tools::cells::{CellComplex, Infeasible};
 use sig_tools::combinatorial_map::{CombinatorialMap, OperatorError, Walk};
 
-use crate::model::{assert_is_map, closed, map_of, sphere};
+use crate::model::{assert_is_map, closed, map_of, sphere, with_complex};
 
-/// The arcs of the incidence graph with their multiplicities.
-type Arcs = BTreeMap<(SimplexId, SimplexId), usize>;
-
-fn arcs(map: &CombinatorialMap) -> Arcs {
-    map.arcs().unwrap().into_iter().map(|(p, q, count)| ((p, q), count)).collect()
-}
-
-/// The other cell that is joined with a cell by an arc, if there are two in all, `deleted` once: the condition of mcc-2012,
-/// 4.2.
-fn other(mut joined: Vec<(SimplexId, usize)>, deleted: SimplexId) -> Option<SimplexId> {
-    joined.sort_unstable_by_key(|&(cell, _)| cell != deleted);
-    match joined.as_slice() {
-        &[(cell, 1), (other, _)] if cell == deleted => Some(other),
-        _ => None,
+/// Checks that the cells of a map and their arcs are those of an incidence graph.
+fn assert_same(map: &CombinatorialMap, graph: &CellComplex) {
+    let id = |cell: CellId| SimplexId::new(cell.index());
+    let mut arcs: Vec<(SimplexId, SimplexId, usize)> = Vec::new();
+    for cell in graph.cells() {
+        let above = graph.coboundary(cell);
+        arcs.extend(above.map(|arc| (id(cell), id(arc.cell), arc.incidence.multiplicity as usize)));
     }
-}
-
-/// K0C1C(p, q), the first instance of mcc-2012, 4.2, on the labelled graph; `None` if it is not feasible.
-fn contracted(arcs: &Arcs, p: SimplexId, q: SimplexId) -> Option<Arcs> {
-    let below = arcs.iter().filter(|((_, upper), _)| *upper == q).map(|(&(lower, _), &count)| (lower, count)).collect();
-    let kept = other(below, p)?;
-    let mut result: Arcs =
-        arcs.iter().filter(|((a, b), _)| ![*a, *b].iter().any(|x| [p, q].contains(x))).map(|(k, v)| (*k, *v)).collect();
-    for (&(_, r), &count) in arcs.iter().filter(|((lower, upper), _)| *lower == p && *upper != q) {
-        *result.entry((kept, r)).or_default() += arcs[&(kept, q)] * count;
+    assert_eq!(map.arcs().unwrap(), arcs);
+    for dim in 0..=2 {
+        assert!(map.cells(dim).eq(graph.cells().filter(|&cell| graph.dim_of(cell) == Some(dim)).map(id)));
     }
-    Some(result)
-}
-
-/// K1C2C(q, p), the second instance, its dual.
-fn removed(arcs: &Arcs, q: SimplexId, p: SimplexId) -> Option<Arcs> {
-    let turned = |arcs: &Arcs| arcs.iter().map(|(&(a, b), &count)| ((b, a), count)).collect::<Arcs>();
-    contracted(&turned(arcs), p, q).map(|arcs| turned(&arcs))
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -56,19 +34,17 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     prop::collection::vec(step.prop_map(|(edge, at, is_removal)| Step { edge, at, is_removal }), 0..40)
 }
 
-fn euler(map: &CombinatorialMap) -> usize {
-    map.num_cells(0) + map.num_cells(2) - map.num_cells(1)
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Whatever the order, the map stays a map, and its cells and their arcs are those of the operators on the graph. The one
-    /// difference is the last edge of a component.
+    /// Whatever the order: removal is K1C2C and contraction is K0C1C on the incidence graph of the cells, with the same cells,
+    /// arcs and multiplicities after, and the one is feasible where the other is. The one difference is the last edge of a
+    /// component.
     #[test]
     fn operators_are_those_on_the_incidence_graph(words in closed(2..=2), steps in steps()) {
         let mut map = map_of(&words).unwrap();
-        let characteristic = euler(&map);
+        let mut graph = with_complex(&words, |complex| CellComplex::from_complex(complex)).unwrap();
+        assert_same(&map, &graph);
         let mut walk = Walk::new();
         for Step { edge, at, is_removal } in steps {
             let edges: Vec<SimplexId> = map.cells(1).collect();
@@ -76,31 +52,33 @@ proptest! {
             let dart = map.dart_of(edge).unwrap();
             let dart = if at { dart } else { map.beta(2, dart).unwrap() };
             let cell = map.cell(dart, if is_removal { 2 } else { 0 }).unwrap();
-            let before = arcs(&map);
-            let expected = if is_removal { removed(&before, edge, cell) } else { contracted(&before, cell, edge) };
             let unchanged = map.clone();
             let done =
                 if is_removal { map.remove(edge, cell, &mut walk) } else { map.contract(edge, cell, &mut walk) };
+            let [low, high] = if is_removal { [edge, cell] } else { [cell, edge] };
+            let [low, high] = [low, high].map(|cell| CellId::new(cell.index() as u32));
+            if done == Err(OperatorError::LastEdge(edge)) {
+                // The component is a sphere of one edge, and on the graph one without.
+                let ends = map.boundary(edge, 0, &mut walk).len();
+                prop_assert_eq!(ends + map.coboundary(edge, 2, &mut walk).len(), 3);
+                let (mut less, vacated) = (graph.clone(), edge.index());
+                less.kill(low, high).unwrap();
+                prop_assert!(!less.contains(CellId::new(vacated as u32)));
+                prop_assert_eq!(&map, &unchanged);
+                continue;
+            }
+            let killed = graph.kill(low, high);
+            prop_assert_eq!(done.is_ok(), killed.is_ok(), "{:?} {:?}", done, killed);
             match done {
-                Ok(()) => {
-                    prop_assert_eq!(Some(arcs(&map)), expected);
-                    prop_assert_eq!(euler(&map), characteristic);
-                    prop_assert!(map.dart_of(edge).is_none() && map.dart_of(cell).is_none());
-                    assert_is_map(&map);
-                }
+                Ok(()) => assert_is_map(&map),
                 Err(error) => {
+                    prop_assert_eq!(error, OperatorError::Twice { edge, cell });
+                    let twice = Infeasible::Multiplicity { low, high, multiplicity: 2 };
+                    prop_assert_eq!(killed.unwrap_err(), twice);
                     prop_assert_eq!(&map, &unchanged);
-                    if error == OperatorError::LastEdge(edge) {
-                        // The component is a sphere of one edge.
-                        let (around, beside) = (map.coboundary(edge, 2, &mut walk).len(), before.len());
-                        prop_assert_eq!(around + map.boundary(edge, 0, &mut walk).len(), 3);
-                        prop_assert!(expected.is_some() && beside >= 3);
-                    } else {
-                        prop_assert_eq!(error, OperatorError::Twice { edge, cell });
-                        prop_assert_eq!(expected, None);
-                    }
                 }
             }
+            assert_same(&map, &graph);
         }
     }
 }
