@@ -16,9 +16,9 @@ use std::error::Error;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use common::chart::{Chart, Series};
 use common::{figure, run, timed};
 use sig_tools::build::{BuildOptions, complete};
+use sig_tools::chart::{Chart, Series};
 use sig_tools::flag::{FlagOptions, expand};
 use sig_tools::frozen::FrozenTree;
 use sig_tools::generate::{klein_bottle_grid, sphere4};

@@ -18,6 +18,8 @@
 //! | simplices to arrays in canonical order | [`mod@build`] | [`build::build`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | structures to compare the SIG with | [`baselines`] | [`baselines::Structure`] |
+//! | the SIG beside them on one complex | [`mod@compare`] | [`compare::compare`] |
+//! | charts as SVG | [`chart`] | [`chart::Chart`], [`chart::draw_bars`] |
 //! | cliques of a graph to a simplex tree | [`mod@flag`] | [`flag::expand`], [`flag::estimate`] |
 //! | landmarks and witnesses to a simplex tree | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
 //! | a simplex tree that changes | [`mod@simplex_tree`] | [`simplex_tree::SimplexTree`] |
@@ -52,8 +54,10 @@
 pub mod analysis;
 pub mod baselines;
 pub mod build;
-pub mod combinatorial_map;
 pub mod cells;
+pub mod chart;
+pub mod combinatorial_map;
+pub mod compare;
 pub mod contract;
 pub mod distances;
 pub mod export;

@@ -1,10 +1,8 @@
-//! What the benchmarks share: timings of several rounds, the peers' programs, and charts.
+//! What the benchmarks share: timings of several rounds, and the peers' programs.
 //!
 //! Machines are noisy, so whatever is compared is measured in turn, several rounds, and the medians are printed with
 //! their spread. Read the ratios.
 #![allow(dead_code, reason = "each benchmark uses a part of it")]
-
-pub(crate) mod chart;
 
 use std::error::Error;
 use std::ffi::{OsStr, OsString};

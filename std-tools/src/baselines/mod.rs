@@ -22,6 +22,7 @@
 //! faster where only the next dimension up is asked.
 
 mod around;
+pub mod conjecture;
 mod faces;
 pub mod formulas;
 mod indexed;

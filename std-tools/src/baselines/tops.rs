@@ -61,6 +61,11 @@ impl Tops {
         self.of_dim(dim).len() / (dim + 1)
     }
 
+    /// The vertices of all top simplices but those of dimension 0, each as often as it occurs.
+    pub(crate) fn num_listed_vertices(&self) -> usize {
+        self.soup.simplices.iter().skip(1).map(Vec::len).sum()
+    }
+
     /// The vertices of the top simplices of one dimension, `dim` + 1 each.
     pub(super) fn of_dim(&self, dim: Dim) -> &[u32] {
         self.soup.simplices.get(dim).map_or(&[], Vec::as_slice)
@@ -88,7 +93,7 @@ impl Tops {
     }
 
     /// The labels of some vertices, by increasing vertex, separated by commas; ∅ if there are none.
-    pub(super) fn name(&self, word: &[u32]) -> String {
+    pub(crate) fn name(&self, word: &[u32]) -> String {
         if word.is_empty() {
             return "∅".to_owned();
         }

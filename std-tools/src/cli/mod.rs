@@ -6,6 +6,7 @@
 
 mod build;
 mod collapse;
+mod compare;
 mod completions;
 mod contract;
 mod expand;
@@ -47,6 +48,7 @@ Examples:
   sig collapse c.sigc -o small.sigc     fewer simplices, the same homotopy type
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
+  sig compare bunny.sigc                beside other structures: space, building, relations
   sig verify bunny.sigc                 whether it is whole and right
   sig export bunny.sigc -o bunny.vtu    for ParaView
 
@@ -64,6 +66,7 @@ enum Command {
     Info(info::Args),
     Query(query::Args),
     Tree(tree::Args),
+    Compare(compare::Args),
     Verify(verify::Args),
     Export(export::Args),
     Completions(completions::Args),
@@ -82,6 +85,7 @@ impl Command {
             Self::Info(args) => args.run(),
             Self::Query(args) => args.run(),
             Self::Tree(args) => args.run(),
+            Self::Compare(args) => args.run(),
             Self::Verify(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Completions(args) => args.run(),

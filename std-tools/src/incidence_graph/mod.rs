@@ -82,6 +82,11 @@ impl<I: Index> IncidenceGraph<I> {
     /// # Errors
     /// [`IncidenceError`]: a complex that is too large for memory, or for integers of the width of `I`.
     pub fn of_tops(tops: &Tops) -> Result<Self, IncidenceError> {
+        // Of top simplices alone there is more than this to store: not worth a build that comes to nothing.
+        let largest = tops.num_listed_vertices();
+        if I::from_usize(largest).is_none() {
+            return Err(Refusal::TooNarrow { largest, bits: I::WIDTH.bits() }.into());
+        }
         let options = BuildOptions { order: build::VertexOrder::Input, ..BuildOptions::default() };
         Ok(match build::faces(tops.numbered(), &options)? {
             Arrays::Narrow(faces) => Self::of_faces(faces),
