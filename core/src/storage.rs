@@ -48,6 +48,10 @@ pub struct PaperStorage {
     pub lists: usize,
     /// Σ_{0≤p<d} (κ_p + n_p): the lists if no simplex were flagged.
     pub general_lists: usize,
+    /// 2 n_{d−1}: the pairs of the specialisation of 7.4, for complexes whose (d−1)-simplices have two d-simplices at most.
+    pub pairs: usize,
+    /// What the pairs stand for: pointers of simplices of dimension d − 1, of which each has a flag too, and their lists.
+    pub in_pairs: Storage,
     /// Σ_{0≤p≤d} n_p: the visited bits, which are in the scratch, not in the file.
     pub visited_bits: usize,
 }
@@ -63,6 +67,14 @@ impl PaperStorage {
     #[must_use]
     pub const fn sig_general(&self) -> Storage {
         Storage { integers: self.lookup + self.boundary + self.pointers + self.general_lists, bits: self.pointers }
+    }
+
+    /// 7.4: as [`sig`](Self::sig), with two integers for each simplex of dimension d − 1 in place of pointer, list and flag:
+    /// for d = 3, without the manifold flag and but for the lookup table, 2 n_0 + 4 n_1 + 5 n_2 + 4 n_3 + κ_0 + κ_1.
+    #[must_use]
+    pub const fn sig_pairs(&self) -> Storage {
+        let Storage { integers, bits } = self.sig();
+        Storage { integers: integers - self.in_pairs.integers + self.pairs, bits: bits - self.in_pairs.bits }
     }
 
     /// 7.1: the incidence graph, 2 Σ_{0<p≤d} (p+1) n_p + Σ_{0≤p<d} n_p.
@@ -83,6 +95,8 @@ pub struct FileStorage {
     pub pointers: usize,
     /// Integers of the lists, entries and stop codes.
     pub lists: usize,
+    /// Integers of the pairs, where the file has them.
+    pub pairs: usize,
     /// Flag bits.
     pub flags: usize,
     /// Bytes of the tree's sections.
@@ -101,7 +115,8 @@ impl FileStorage {
     /// Integers and bits of the paper's five arrays.
     #[must_use]
     pub const fn sig(&self) -> Storage {
-        Storage { integers: self.lookup + self.boundary + self.pointers + self.lists, bits: self.flags }
+        let lists = self.pointers + self.lists + self.pairs;
+        Storage { integers: self.lookup + self.boundary + lists, bits: self.flags }
     }
 }
 
@@ -145,7 +160,12 @@ impl<I: Index> Complex<'_, I> {
                 storage.general_lists += clusters.total() + count;
                 // A flagged simplex has one cluster: its entry and stop code are not there. (In a buffer that is not a
                 // complex it may have none.)
-                storage.lists += (clusters.total() + count).saturating_sub(2 * clusters.single_cluster);
+                let lists = (clusters.total() + count).saturating_sub(2 * clusters.single_cluster);
+                storage.lists += lists;
+                if dim + 1 == top {
+                    storage.pairs = 2 * count;
+                    storage.in_pairs = Storage { integers: count + lists, bits: count };
+                }
             }
         }
         storage
@@ -164,6 +184,7 @@ impl<I: Index> Complex<'_, I> {
                 SectionKind::Boundary => storage.boundary = len,
                 SectionKind::Pointers => storage.pointers = len,
                 SectionKind::Lists => storage.lists = len,
+                SectionKind::Pairs => storage.pairs = len,
                 SectionKind::Flags => {
                     storage.flags = if matches!(section.column, Column::Bits { .. }) { len } else { 0 }
                 }

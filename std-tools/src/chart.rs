@@ -217,7 +217,7 @@ impl Bars {
                 x += width;
             }
             let (at, bottom) = place(middle, floor);
-            area.draw(&Text::new(name.clone(), (at, bottom + 6), centred(13))).map_err(|error| error.to_string())?;
+            area.draw(&Text::new(name.clone(), (at, bottom + 9), centred(13))).map_err(|error| error.to_string())?;
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use sig_tests::strategies;
 use sig_tools::build::{Arrays, BuildOptions, Built, SigArrays, build};
 use sig_tools::incidence_graph::IncidenceGraph;
 use sig_tools::soup::{Labels, Soup};
-use sig_tools::store::{EncodeOptions, Encoding};
+use sig_tools::store::{EncodeError, EncodeOptions, Encoding};
 
 /// The simplices as a reader would hand them on: vertex numbers by first appearance, labels in a table.
 fn soup(simplices: &[Word]) -> Soup {
@@ -73,6 +73,19 @@ fn assert_file(built: &Built, oracle: &Oracle) {
         let lower = extras && oracle.dims() > 4;
         let options = Options { width, tree: extras, lower, checksums: extras, names, parity, ..Options::default() };
         assert!(file[..] == encode(oracle, &options)[..], "the file at width {width:?}");
+        let file = Encoding::new(built, &EncodeOptions { pairs: true, ..encode_options });
+        match file {
+            Ok(file) => {
+                let file = file.to_bytes().unwrap();
+                assert!(file[..] == encode(oracle, &Options { pairs: true, ..options })[..], "pairs, width {width:?}");
+            }
+            Err(EncodeError::Crowded { simplex, dim, cofaces }) => {
+                assert_eq!((oracle.dim(simplex) + 1, oracle.coboundary(simplex, dim).len()), (dim, cofaces));
+                let before = oracle.of_dim(dim - 1).into_iter().take_while(|&other| other < simplex);
+                assert!(cofaces > 2 && before.into_iter().all(|other| oracle.coboundary(other, dim).len() <= 2));
+            }
+            Err(other) => panic!("{other}"),
+        }
     }
 }
 

@@ -41,6 +41,9 @@ fn originals() -> Vec<AlignedBytes> {
         for width in IndexWidth::ALL {
             originals.push(encode(&oracle, &Options::bare(width)));
             originals.push(encode(&oracle, &Options { tree: true, ..Options::bare(width) }));
+            if oracle.is_thin() {
+                originals.push(encode(&oracle, &Options { pairs: true, ..Options::bare(width) }));
+            }
         }
         originals.push(encode(&oracle, &Options::everything(&oracle, IndexWidth::Bits16)));
         let everything = Options::everything(&oracle, IndexWidth::Bits16);

@@ -13,14 +13,18 @@ use sig_tools::soup::{Labels, Soup};
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Loaded, OwnedScratch};
 
+/// With lists at the (d−1)-simplices, and with pairs where these hold them.
 fn check(oracle: &Oracle, width: IndexWidth, tree: bool) {
-    let bytes = encode(oracle, &Options { tree, lower: tree, ..Options::bare(width) });
-    let any = AnyComplex::from_bytes(&bytes).unwrap();
-    with_complex!(any, complex => {
-        assert_eq!(complex.validate(), Ok(()));
-        assert_conforms(&complex, oracle);
-        assert_agrees_with_the_paper(&complex);
-    });
+    for pairs in [false, true].into_iter().filter(|pairs| !pairs || oracle.is_thin()) {
+        let bytes = encode(oracle, &Options { tree, lower: tree, pairs, ..Options::bare(width) });
+        let any = AnyComplex::from_bytes(&bytes).unwrap();
+        with_complex!(any, complex => {
+            assert_eq!(complex.validate(), Ok(()));
+            assert_eq!(complex.has_pairs(), pairs && oracle.dims() > 1);
+            assert_conforms(&complex, oracle);
+            assert_agrees_with_the_paper(&complex);
+        });
+    }
 }
 
 /// The same complex as a file of kind tree, with and without lower neighbours.

@@ -32,7 +32,35 @@ fn sections(bytes: &[u8]) -> Vec<(u16, usize, usize)> {
         .collect()
 }
 
+/// With lists at the (d−1)-simplices, and with pairs where these hold them.
 fn check(oracle: &Oracle, options: &Options) {
+    check_lists(oracle, options);
+    if oracle.is_thin() && oracle.dims() > 1 {
+        check_pairs(oracle, &Options { pairs: true, ..options.clone() });
+    }
+}
+
+/// 7.4: two integers at each (d−1)-simplex, and 4.2 below.
+fn check_pairs(oracle: &Oracle, options: &Options) {
+    let bytes = encode(oracle, options);
+    let table = sections(&bytes);
+    let count =
+        |kind: u16| table.iter().filter(|(other, ..)| *other == kind).map(|(_, count, _)| *count).sum::<usize>();
+    let facets = oracle.of_dim(oracle.dims() - 2).len();
+    let below: Vec<usize> = (0..oracle.len()).filter(|&simplex| oracle.dim(simplex) + 2 < oracle.dims()).collect();
+    let clusters: usize = below.iter().map(|&simplex| oracle.clusters(simplex).len()).sum();
+    let flagged = below.iter().filter(|&&simplex| oracle.is_single_cluster(simplex)).count();
+    let lists = clusters + below.len() - 2 * flagged;
+    assert_eq!((count(3), count(4), count(5), count(19)), (below.len(), lists, below.len(), 2 * facets));
+    let integers = count(1) + count(2) + below.len() + lists + 2 * facets;
+    with_complex!(AnyComplex::from_bytes(&bytes).unwrap(), complex => {
+        let expected = Storage { integers, bits: below.len() };
+        assert_eq!((complex.file_storage().sig(), complex.paper_storage().sig_pairs()), (expected, expected));
+        assert_eq!(complex.file_storage().pairs, 2 * facets);
+    });
+}
+
+fn check_lists(oracle: &Oracle, options: &Options) {
     let bytes = encode(oracle, options);
     let table = sections(&bytes);
     let count =

@@ -101,6 +101,8 @@ pub struct Options {
     pub tree: bool,
     /// The lower neighbours of the vertices.
     pub lower: bool,
+    /// The pairs of 7.4 in place of the lists at the (d−1)-simplices, in dimension 1 and more.
+    pub pairs: bool,
     /// Block checksums.
     pub checksums: bool,
     /// Labels of the vertices.
@@ -137,6 +139,7 @@ impl Options {
             width: Some(width),
             tree: true,
             lower: true,
+            pairs: false,
             checksums: true,
             names: Names::Text((0..vertices).map(|vertex| format!("vertex {vertex} ä")).collect()),
             coordinates: Some((3, (0..3 * vertices).map(|at| number(at) - 0.5).collect())),
@@ -154,7 +157,10 @@ impl Options {
 /// Never: no complex in memory needs more than 64 bits.
 #[must_use]
 pub fn least_width(oracle: &Oracle) -> IndexWidth {
-    let arrays = Arrays::new(oracle);
+    least_width_of(&Arrays::new(oracle, false), oracle)
+}
+
+fn least_width_of(arrays: &Arrays, oracle: &Oracle) -> IndexWidth {
     let largest_offset = arrays.pointers.iter().flatten().copied().max().unwrap_or(0);
     let largest_id = oracle.len().saturating_sub(1);
     IndexWidth::least_for(largest_id.max(largest_offset) as u64).expect("64 bits are enough")
@@ -166,6 +172,7 @@ struct Arrays {
     boundary: Vec<Option<usize>>,
     pointers: Vec<Option<usize>>,
     lists: Vec<Option<usize>>,
+    pairs: Vec<Option<usize>>,
     flags: Vec<bool>,
     child_offsets: Vec<Option<usize>>,
     last_vertices: Vec<Option<usize>>,
@@ -174,7 +181,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    fn new(oracle: &Oracle) -> Self {
+    fn new(oracle: &Oracle, in_pairs: bool) -> Self {
         let top_dim = oracle.dims().saturating_sub(1);
         let below_top = || (0..oracle.len()).filter(|&simplex| oracle.dim(simplex) < top_dim);
         let lookup = (0..oracle.dims()).map(|dim| oracle.of_dim(dim).first().copied()).collect();
@@ -182,9 +189,14 @@ impl Arrays {
         for simplex in (0..oracle.len()).filter(|&simplex| oracle.dim(simplex) > 0) {
             boundary.extend((0..=oracle.dim(simplex)).map(|position| Some(oracle.facet(simplex, position))));
         }
-        let (mut pointers, mut lists, mut flags) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut pointers, mut lists, mut pairs, mut flags) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for simplex in below_top() {
             let entries = oracle.partial_coboundary(simplex);
+            if in_pairs && oracle.dim(simplex) + 1 == top_dim {
+                assert!(entries.len() <= 2, "no room in a pair");
+                pairs.extend([entries.first().copied(), entries.get(1).copied()]);
+                continue;
+            }
             let flag = oracle.is_single_cluster(simplex);
             flags.push(flag);
             if flag {
@@ -213,7 +225,18 @@ impl Arrays {
             lower_neighbours.extend(lower.map(Some));
             lower_offsets.push(Some(lower_neighbours.len()));
         }
-        Self { lookup, boundary, pointers, lists, flags, child_offsets, last_vertices, lower_offsets, lower_neighbours }
+        Self {
+            lookup,
+            boundary,
+            pointers,
+            lists,
+            pairs,
+            flags,
+            child_offsets,
+            last_vertices,
+            lower_offsets,
+            lower_neighbours,
+        }
     }
 }
 
@@ -223,7 +246,12 @@ impl Arrays {
 /// If the complex does not fit in the width, or the options do not fit the complex.
 #[must_use]
 pub fn encode(oracle: &Oracle, options: &Options) -> AlignedBytes {
-    encode_kind(Kind::Sig, oracle, options.width.unwrap_or_else(|| least_width(oracle)), options)
+    encode_kind(
+        Kind::Sig,
+        oracle,
+        options.width.unwrap_or_else(|| least_width_of(&Arrays::new(oracle, options.pairs), oracle)),
+        options,
+    )
 }
 
 /// The file of a complex, a simplex tree.
@@ -238,7 +266,7 @@ pub fn encode_tree(oracle: &Oracle, options: &Options) -> AlignedBytes {
 }
 
 fn encode_kind(kind: Kind, oracle: &Oracle, width: IndexWidth, options: &Options) -> AlignedBytes {
-    let arrays = Arrays::new(oracle);
+    let arrays = Arrays::new(oracle, options.pairs);
     let vertices = oracle.of_dim(0).len();
     let index = |values: &[Option<usize>]| Integers::new(width, values);
     let (lookup, boundary) = (index(&arrays.lookup), index(&arrays.boundary));
@@ -296,6 +324,10 @@ fn encode_kind(kind: Kind, oracle: &Oracle, width: IndexWidth, options: &Options
     if options.lower {
         sections.push(Section::new(SectionKind::LowerOffsets, lower_offsets.column()));
         sections.push(Section::new(SectionKind::LowerNeighbours, lower_neighbours.column()));
+    }
+    let pairs = index(&arrays.pairs);
+    if options.pairs && oracle.dims() > 1 {
+        sections.push(Section::new(SectionKind::Pairs, pairs.column()));
     }
     let encoder = Encoder::new(kind, width, oracle.dims(), oracle.len() as u64, &sections).unwrap();
     let encoder = if options.checksums { encoder.with_checksums().unwrap() } else { encoder };

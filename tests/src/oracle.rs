@@ -217,6 +217,13 @@ impl Oracle {
         self.restricted_star(simplex).is_empty()
     }
 
+    /// Whether no simplex one dimension below the largest has more than two cofaces of that: the pairs of 7.4 hold them.
+    #[must_use]
+    pub fn is_thin(&self) -> bool {
+        let Some(below) = self.dims().checked_sub(2) else { return true };
+        self.of_dim(below).into_iter().all(|facet| self.coboundary(facet, below + 1).len() <= 2)
+    }
+
     /// The top simplices, by id.
     #[must_use]
     pub fn tops(&self) -> Vec<usize> {

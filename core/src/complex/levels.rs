@@ -77,6 +77,12 @@ impl Levels {
         self.dims.checked_sub(2).map_or(0, |dim| self.start(dim))
     }
 
+    /// Twice the number of simplices of dimension d − 1: of indices in pairs.
+    pub(crate) fn num_pairs(&self) -> usize {
+        // No lookup table has more than half of the ids of an address space: they are elements of slices, or of none.
+        self.num_pointers().saturating_sub(self.flags_end()).saturating_mul(2)
+    }
+
     /// The number of boundary entries: Σ (p+1) n_p for p > 0.
     pub(crate) fn num_boundary(&self) -> usize {
         (1..self.dims).map(|dim| self.ids(dim).len() * (dim + 1)).sum()

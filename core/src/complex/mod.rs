@@ -43,6 +43,8 @@ pub struct Complex<'a, I> {
     pointers: &'a [I],
     lists: &'a [I],
     flags: &'a [u8],
+    /// Two d-simplices for each simplex of dimension d − 1, where the file has them in place of lists.
+    pairs: Option<&'a [I]>,
     tree: Option<Tree<'a, I>>,
 }
 
@@ -84,6 +86,19 @@ impl<'a, I: Index> Complex<'a, I> {
     pub(crate) fn flag(&self, simplex: usize) -> bool {
         simplex < self.levels.flags_end()
             && self.flags.get(simplex / 8).is_some_and(|byte| byte >> (simplex % 8) & 1 == 1)
+    }
+
+    /// Whether the d-simplices at each (d−1)-simplex stand in pairs, not in lists (sig-2004, 7.4).
+    #[must_use]
+    pub const fn has_pairs(&self) -> bool {
+        self.pairs.is_some()
+    }
+
+    /// The pair of a simplex of dimension d − 1, if it has one: its d-simplices, and stop codes behind them.
+    #[inline]
+    pub(crate) fn pair(&self, simplex: usize) -> Option<&'a [I]> {
+        let start = simplex.checked_sub(self.levels.flags_end())?.checked_mul(2)?;
+        self.pairs?.get(start..start.checked_add(2)?)
     }
 
     /// The pointer of a simplex of dimension below d.

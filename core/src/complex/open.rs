@@ -32,7 +32,8 @@ impl<'a, I: Index> Complex<'a, I> {
         }
         let sections = Sections { container: &container };
         let levels = sections.levels::<I>()?;
-        let pointers = levels.num_pointers();
+        let pairs = sections.optional_indices(SectionKind::Pairs, levels.num_pairs())?;
+        let pointers = if pairs.is_some() { levels.flags_end() } else { levels.num_pointers() };
         let boundary = sections.indices(SectionKind::Boundary, Some(levels.num_boundary()))?;
         let has_tree = sections.both([SectionKind::ChildOffsets, SectionKind::LastVertices])?;
         if !has_tree && sections.both([SectionKind::LowerOffsets, SectionKind::LowerNeighbours])? {
@@ -46,6 +47,7 @@ impl<'a, I: Index> Complex<'a, I> {
             pointers: sections.indices(SectionKind::Pointers, Some(pointers))?,
             lists: sections.indices(SectionKind::Lists, None)?,
             flags: sections.bits(SectionKind::Flags, pointers)?,
+            pairs,
             tree: if has_tree { Some(Tree::from_sections(&sections, levels, boundary)?) } else { None },
         };
         sections.check_columns(&levels)?;

@@ -66,6 +66,15 @@ impl<'a> Sections<'_, 'a> {
         Ok(indices)
     }
 
+    /// The indices of a section that may be there.
+    pub(crate) fn optional_indices<I: Index>(
+        &self,
+        kind: SectionKind,
+        len: usize,
+    ) -> Result<Option<&'a [I]>, FormatError> {
+        self.container.section(kind).map(|_| self.indices(kind, Some(len))).transpose()
+    }
+
     /// The bits of a section that must be there.
     pub(crate) fn bits(&self, kind: SectionKind, len: usize) -> Result<&'a [u8], FormatError> {
         let section = self.required(kind)?;
@@ -122,6 +131,8 @@ impl<'a> Sections<'_, 'a> {
             SectionKind::LabelOffsets => (matches!(column, Column::U64(_)), Some(vertices + 1)),
             SectionKind::LabelText | SectionKind::Provenance => (matches!(column, Column::U8(_)), None),
             SectionKind::Coordinates => (matches!(column, Column::F32(_) | Column::F64(_)), vector_len(vertices)),
+            // The (−1)-simplex has no pair.
+            SectionKind::Pairs => (levels.dims() > 1, None),
             SectionKind::Parity => (matches!(column, Column::Bits { .. }), None),
             SectionKind::Checksums => (matches!(column, Column::U32(_)), None),
             SectionKind::Filtration => (matches!(column, Column::F64(_)), Some(levels.total())),

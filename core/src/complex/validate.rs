@@ -69,8 +69,10 @@ impl<I: Index> Complex<'_, I> {
     fn validate_partial_coboundary(&self) -> Result<(), FormatError> {
         let top_dim = self.levels().dims().saturating_sub(1);
         let mut list_start = 0;
+        // Beside pairs the lists end where the flags do.
+        let listed = if self.has_pairs() { self.levels().flags_end() } else { self.levels().num_pointers() };
         for dim in 0..top_dim {
-            for simplex in self.levels().ids(dim) {
+            for simplex in self.levels().ids(dim).take_while(|&simplex| simplex < listed) {
                 let pointer = self.pointer(simplex).map_or(usize::MAX, Index::to_usize);
                 let broken = |rule| invalid(SectionKind::Pointers, simplex, rule);
                 if self.flag(simplex) {
@@ -87,12 +89,39 @@ impl<I: Index> Complex<'_, I> {
         if list_start != self.lists.len() {
             return Err(invalid(SectionKind::Lists, list_start, Rule::ListEnd));
         }
+        self.validate_pairs(top_dim)?;
         for dim in 1..=top_dim {
             for simplex in self.levels().ids(dim) {
                 for facet in self.row(dim, simplex) {
                     if self.is_top(SimplexId::new(facet.to_usize())) {
                         return Err(invalid(SectionKind::Pointers, facet.to_usize(), Rule::MissingEntry));
                     }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that each pair holds simplices of dimension d around the simplex that it belongs to, increasing, and then
+    /// stop codes.
+    fn validate_pairs(&self, top_dim: Dim) -> Result<(), FormatError> {
+        for (number, simplex) in (self.levels().flags_end()..self.levels().num_pointers()).enumerate() {
+            let Some(pair) = self.pair(simplex) else { return Ok(()) };
+            let mut previous = None;
+            for (position, &entry) in pair.iter().enumerate() {
+                let broken = |rule| invalid(SectionKind::Pairs, 2 * number + position, rule);
+                if entry == I::STOP {
+                    if position == 0 && pair.get(1) != Some(&I::STOP) {
+                        return Err(broken(Rule::ListOrder));
+                    }
+                    continue;
+                }
+                if previous.replace(entry).is_some_and(|before| before >= entry) {
+                    return Err(broken(Rule::ListOrder));
+                }
+                let entry = entry.to_usize();
+                if !self.levels().ids(top_dim).contains(&entry) || !self.is_face(simplex, entry) {
+                    return Err(broken(Rule::ListEntry));
                 }
             }
         }

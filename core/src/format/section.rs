@@ -14,11 +14,11 @@ pub enum SectionKind {
     Lookup = 1,
     /// B_{p,p−1}, 0 < p ≤ d: F\[σ\]\[0..=p\] in the order of the ids.
     Boundary = 2,
-    /// One pointer for each simplex of dimension below d.
+    /// One pointer for each simplex of dimension below d; below d − 1 beside pairs.
     Pointers = 3,
     /// The partial co-boundary lists, each ended by one stop code.
     Lists = 4,
-    /// One flag for each simplex of dimension below d: the pointer is the only cluster's d-simplex.
+    /// One flag for each simplex of dimension below d, or d − 1 beside pairs: the pointer is the only cluster's d-simplex.
     Flags = 5,
     /// The first child of each simplex of dimension below d, and the number of simplices at the end.
     ChildOffsets = 6,
@@ -46,11 +46,13 @@ pub enum SectionKind {
     LowerOffsets = 17,
     /// The lower neighbours of each vertex, increasing: the other ends of its edges that come before it.
     LowerNeighbours = 18,
+    /// Two indices for each simplex of dimension d − 1: its d-simplices, where none has more than two (sig-2004, 7.4).
+    Pairs = 19,
 }
 
 impl SectionKind {
     /// Every kind, in the order of their numbers.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Lookup,
         Self::Boundary,
         Self::Pointers,
@@ -69,6 +71,7 @@ impl SectionKind {
         Self::Checksums,
         Self::LowerOffsets,
         Self::LowerNeighbours,
+        Self::Pairs,
     ];
 
     /// The number of the kind in the section table.
@@ -83,7 +86,7 @@ impl SectionKind {
 
     /// Whether files of kind SIG have the section and trees do not.
     pub(crate) const fn is_of_sig_only(self) -> bool {
-        matches!(self, Self::Boundary | Self::Pointers | Self::Lists | Self::Flags | Self::Parity)
+        matches!(self, Self::Boundary | Self::Pointers | Self::Lists | Self::Flags | Self::Parity | Self::Pairs)
     }
 
     /// The name of the kind, as `FORMAT.md` has it.
@@ -108,6 +111,7 @@ impl SectionKind {
             Self::Checksums => "checksums",
             Self::LowerOffsets => "lower-offsets",
             Self::LowerNeighbours => "lower-neighbours",
+            Self::Pairs => "pairs",
         }
     }
 }

@@ -13,7 +13,7 @@ impl<'a, I: Index> Complex<'a, I> {
     pub fn partial_coboundary(&self, simplex: SimplexId) -> PartialCoboundary<'a, I> {
         let index = simplex.index();
         let entries = match self.pointer(index) {
-            None => &[][..],
+            None => self.pair(index).unwrap_or(&[]),
             // The pointer is itself the only entry.
             Some(_) if self.flag(index) => self.pointers_from(index).get(..1).unwrap_or(&[]),
             Some(offset) => self.lists_from(offset.to_usize()),

@@ -7,11 +7,13 @@ use anyhow::Context;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
-use sig_core::{Index, IndexWidth};
+use sig_core::{Index, IndexWidth, SimplexId};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
 use sig_tools::io::{self as readers, Format, MergeReport, ReadOptions, ReadReport};
+use sig_tools::names::simplex_name;
 use sig_tools::soup::Soup;
-use sig_tools::store::{EncodeOptions, Encoding};
+use sig_tools::store::{EncodeError, EncodeOptions, Encoding};
+use sig_tools::{Loaded, with_view};
 
 use super::output::{self, Content, grouped};
 use super::{Threads, progress};
@@ -58,6 +60,11 @@ pub(super) struct Args {
     /// Leave out the sections that make finding simplices by vertices fast
     #[arg(long)]
     no_tree: bool,
+
+    /// Store the top simplices at each simplex of one dimension less in pairs: less space, for complexes in which it has
+    /// at most two
+    #[arg(long)]
+    pairs: bool,
 
     /// Leave out the checksums
     #[arg(long)]
@@ -111,11 +118,12 @@ impl Args {
         let options = EncodeOptions {
             width: self.index_bits,
             tree: !self.no_tree,
+            pairs: self.pairs,
             checksums: !self.no_checksums,
             provenance: self.provenance.as_deref(),
             ..EncodeOptions::default()
         };
-        let encoding = Encoding::new(&built, &options)?;
+        let encoding = Encoding::new(&built, &options).map_err(|error| explain(error, &built))?;
         output::to_path(path, existing, |out| encoding.write_to(out))?;
         let report = Report {
             output: path.display().to_string(),
@@ -167,6 +175,15 @@ impl Args {
         bars.clear();
         built
     }
+}
+
+/// An error that names a simplex by its labels where the encoder has its number only.
+fn explain(error: EncodeError, built: &Built) -> anyhow::Error {
+    let EncodeError::Crowded { simplex, dim, cofaces } = error else { return error.into() };
+    let file = Encoding::new(built, &EncodeOptions::default()).and_then(|encoding| encoding.to_bytes());
+    let Some(file) = file.ok().and_then(|bytes| Loaded::from_file_bytes(bytes).ok()) else { return error.into() };
+    let name = with_view!(file.view(), complex => simplex_name(&complex, SimplexId::new(simplex)));
+    anyhow::anyhow!("simplex {name} is a face of {cofaces} simplices of dimension {dim}, and --pairs has room for two")
 }
 
 /// What was read and built; as JSON, the names of the fields.

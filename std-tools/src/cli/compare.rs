@@ -142,8 +142,16 @@ fn print(comparison: &Comparison, formulas: bool, out: &mut dyn Write) -> io::Re
             violation.simplices
         )?;
     }
-    writeln!(out)?;
-    if formulas { print_formulas(comparison, out) } else { table(&times(comparison), out) }
+    if formulas {
+        writeln!(out)?;
+        return print_formulas(comparison, out);
+    }
+    let times = times(comparison);
+    if times.len() > 1 {
+        writeln!(out)?;
+        table(&times, out)?;
+    }
+    Ok(())
 }
 
 fn space(comparison: &Comparison) -> Vec<Vec<String>> {

@@ -106,12 +106,17 @@ struct Clusters {
 /// The paper's counts (4.2, 7.1) beside those of the file.
 #[derive(Serialize)]
 struct Storage {
+    /// Whether the file is that of 7.4.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pairs: bool,
     paper_integers: usize,
     paper_bits: usize,
     file_integers: usize,
     file_bits: usize,
     /// 4.2 if no simplex had the manifold flag.
     paper_general_integers: usize,
+    #[serde(skip)]
+    paper_general_bits: usize,
     /// 7.1: the incidence graph of the same complex.
     incidence_graph_integers: usize,
     tree_bytes: usize,
@@ -135,13 +140,16 @@ struct Section {
 }
 
 impl Storage {
-    fn new(paper: &PaperStorage, file: &FileStorage) -> Self {
+    fn new(paper: &PaperStorage, file: &FileStorage, pairs: bool) -> Self {
+        let expected = if pairs { paper.sig_pairs() } else { paper.sig() };
         Self {
-            paper_integers: paper.sig().integers,
-            paper_bits: paper.sig().bits,
+            pairs,
+            paper_integers: expected.integers,
+            paper_bits: expected.bits,
             file_integers: file.sig().integers,
             file_bits: file.sig().bits,
             paper_general_integers: paper.sig_general().integers,
+            paper_general_bits: paper.sig_general().bits,
             incidence_graph_integers: paper.incidence_graph().integers,
             tree_bytes: file.tree_bytes,
             checksum_bytes: file.checksum_bytes,
@@ -158,8 +166,8 @@ impl Storage {
         vec![
             vec!["storage".to_owned(), "integers".to_owned(), "bits".to_owned(), "of IG".to_owned()],
             row("this file", self.file_integers, self.file_bits),
-            row("paper, 4.2", self.paper_integers, self.paper_bits),
-            row("paper, 4.2, no flags", self.paper_general_integers, self.paper_bits),
+            row(if self.pairs { "paper, 7.4, pairs" } else { "paper, 4.2" }, self.paper_integers, self.paper_bits),
+            row("paper, 4.2, no flags", self.paper_general_integers, self.paper_general_bits),
             row("incidence graph, 7.1", self.incidence_graph_integers, 0),
         ]
     }
@@ -186,7 +194,7 @@ impl Summary {
             kind: None,
             top_simplices: Some(analysis.top_simplices),
             facts: Some(facts),
-            storage: Some(Storage::new(&complex.paper_storage(), &complex.file_storage())),
+            storage: Some(Storage::new(&complex.paper_storage(), &complex.file_storage(), complex.has_pairs())),
             ..Self::new(complex, complex.container())
         }
     }
@@ -318,6 +326,7 @@ impl Summary {
             SectionKind::Pointers,
             SectionKind::Lists,
             SectionKind::Flags,
+            SectionKind::Pairs,
         ]);
         let tree = bytes_of(&[
             SectionKind::ChildOffsets,

@@ -89,7 +89,7 @@ pub struct Timing {
     pub asked: usize,
     /// How many simplices an answer had, on average.
     pub found: f64,
-    /// The seconds an answer took, on average over all of them in a row.
+    /// The seconds an answer took, on average over all of them in a row, in the fastest of a few passes.
     pub mean_seconds: f64,
     /// The seconds of the slowest answer, of each simplex the faster of two; a clock reading is in it.
     pub worst_seconds: f64,
@@ -156,6 +156,9 @@ fn find<S: Structure>(structure: &mut S, words: &[Vec<VertexId>], seconds: f64) 
     found
 }
 
+/// How often all are asked in a row; the fastest counts, as other programs only ever make one slower.
+const PASSES: usize = 3;
+
 /// Simplices that are asked at least.
 const FEW: usize = 5;
 
@@ -176,12 +179,15 @@ fn time<S: Structure>(
         lengths.push(found.len());
     }
     let asked = lengths.len();
-    let start = Instant::now();
-    for &simplex in &simplices[..asked] {
-        relation.ask(structure, simplex, &mut found);
-        black_box(&found);
+    let mut all = f64::INFINITY;
+    for _ in 0..PASSES {
+        let start = Instant::now();
+        for &simplex in &simplices[..asked] {
+            relation.ask(structure, simplex, &mut found);
+            black_box(&found);
+        }
+        all = all.min(start.elapsed().as_secs_f64());
     }
-    let all = start.elapsed().as_secs_f64();
     // A second time, so that neither the first allocation nor another program counts.
     let worst = each
         .iter_mut()

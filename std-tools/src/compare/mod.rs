@@ -11,14 +11,14 @@ use std::time::Instant;
 use serde::Serialize;
 use sig_core::format::FormatError;
 use sig_core::storage::Storage;
-use sig_core::{AnyComplex, with_complex};
+use sig_core::{AnyComplex, SimplexId, with_complex};
 
 use crate::baselines::conjecture::{Violation, violations};
 use crate::baselines::formulas::{Formula, Numbers};
 use crate::baselines::{
     IndexedAdjacencies, NonManifoldIndexed, Refusal, Session, Sig, Structure, Tops, TriangleSegment,
 };
-use crate::build::{BuildError, BuildOptions, build};
+use crate::build::{BuildError, BuildOptions, build, narrow};
 use crate::incidence_graph::{IncidenceError, IncidenceGraph, Walk};
 use crate::store::{EncodeError, EncodeOptions, Encoding};
 use crate::{Loaded, OwnedScratch};
@@ -76,8 +76,9 @@ pub struct Entry {
 }
 
 /// The structures in the order of the table; all others are measured against the first.
-pub const STRUCTURES: [Entry; 5] = [
+pub const STRUCTURES: [Entry; 6] = [
     Entry { name: "SIG", formula: Numbers::sig, measure: sig },
+    Entry { name: "SIG pairs", formula: Numbers::sig_pairs, measure: sig_pairs },
     Entry { name: "IG", formula: Numbers::incidence_graph, measure: incidence_graph },
     Entry { name: "IA", formula: Numbers::indexed, measure: indexed },
     Entry { name: "TS", formula: Numbers::triangle_segment, measure: triangle_segment },
@@ -199,7 +200,7 @@ impl Row {
 /// # Errors
 /// [`CompareError`]: a complex that is too large to be built.
 pub fn compare(tops: &Tops, options: CompareOptions) -> Result<Comparison, CompareError> {
-    let file = encoded(tops)?;
+    let file = encoded(tops, false)?;
     let numbers = with_complex!(complex(&file)?, complex => Numbers::of(&complex));
     let sample = with_complex!(complex(&file)?, complex => Sample::new(&complex, options.samples));
     let violations = with_complex!(complex(&file)?, complex => violations(&complex, tops));
@@ -233,9 +234,9 @@ pub fn compare(tops: &Tops, options: CompareOptions) -> Result<Comparison, Compa
 }
 
 /// The SIG of the top simplices with the paper's arrays and nothing beside them.
-fn encoded(tops: &Tops) -> Result<Loaded, CompareError> {
+fn encoded(tops: &Tops, pairs: bool) -> Result<Loaded, CompareError> {
     let built = build(tops.numbered(), &BuildOptions::default())?;
-    let options = EncodeOptions { tree: false, checksums: false, ..EncodeOptions::default() };
+    let options = EncodeOptions { tree: false, checksums: false, pairs, ..EncodeOptions::default() };
     Ok(Loaded::from_file_bytes(Encoding::new(&built, &options)?.to_bytes()?)?)
 }
 
@@ -275,8 +276,26 @@ impl Subject<'_> {
 }
 
 fn sig(subject: &mut Subject<'_>) -> Result<Measured, CompareError> {
-    let (seconds, file) = timed(|| encoded(subject.tops));
-    let file = file?;
+    sig_with(subject, false)
+}
+
+fn sig_pairs(subject: &mut Subject<'_>) -> Result<Measured, CompareError> {
+    sig_with(subject, true)
+}
+
+fn sig_with(subject: &mut Subject<'_>, pairs: bool) -> Result<Measured, CompareError> {
+    let (seconds, file) = timed(|| encoded(subject.tops, pairs));
+    let file = match file {
+        Err(CompareError::Encode(EncodeError::Crowded { simplex, dim, cofaces })) => {
+            let file = encoded(subject.tops, false)?;
+            let simplex = with_complex!(complex(&file)?, complex => {
+                let vertices = complex.vertices(SimplexId::new(simplex));
+                subject.tops.name(&vertices.map(|vertex| narrow(vertex.index())).collect::<Vec<_>>())
+            });
+            return Ok(Err(Refusal::Crowded { simplex, dim, cofaces }));
+        }
+        other => other?,
+    };
     Ok(Ok(with_complex!(complex(&file)?, complex => {
         let mut memory = OwnedScratch::new(&complex);
         subject.ask(seconds, complex.container().header().width.bytes(), Sig::new(complex, &mut memory))

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use sig_core::format::{self, Column, Encoder, Kind, Section, SectionKind};
-use sig_core::{Index, IndexWidth};
+use sig_core::{Dim, Index, IndexWidth};
 
 use super::AlignedBytes;
 use crate::build::{Arrays, Built, SigArrays};
@@ -30,6 +30,10 @@ pub struct EncodeOptions<'a> {
     /// [`star`](sig_core::Complex::star) and the like fast where simplices have many cofaces. If it is not given, it
     /// does from dimension 4 on.
     pub lower_neighbours: Option<bool>,
+    /// Whether a SIG has the d-simplices of each (d−1)-simplex in a pair of fixed place in place of pointer, list and flag
+    /// (sig-2004, 7.4), which takes κ_{d−1}^d integers less; for complexes in which none has more than two of them. Without
+    /// meaning in dimension 0.
+    pub pairs: bool,
     /// Whether the file carries checksums.
     pub checksums: bool,
     /// Where the complex comes from, in the caller's words; nothing of the kind is added by itself.
@@ -38,7 +42,7 @@ pub struct EncodeOptions<'a> {
 
 impl Default for EncodeOptions<'_> {
     fn default() -> Self {
-        Self { width: None, tree: true, lower_neighbours: None, checksums: true, provenance: None }
+        Self { width: None, tree: true, lower_neighbours: None, pairs: false, checksums: true, provenance: None }
     }
 }
 
@@ -58,6 +62,16 @@ pub enum EncodeError {
         largest: u64,
         /// The least width that holds it.
         least: IndexWidth,
+    },
+    /// Pairs were asked for, and a simplex does not have room in one.
+    #[error("simplex number {simplex}, of dimension {}, is a face of {cofaces} simplices; pairs have room for two", dim - 1)]
+    Crowded {
+        /// The first such simplex, of dimension d − 1, by its id.
+        simplex: usize,
+        /// d.
+        dim: Dim,
+        /// How many d-simplices have it as a face.
+        cofaces: usize,
     },
     /// The sections cannot be a file: see [`format::EncodeError`].
     #[error("cannot encode the complex: {0}")]
@@ -113,9 +127,16 @@ impl<'a> Indices<'a> {
 
     fn owned(values: Vec<u32>, width: IndexWidth) -> Self {
         match width {
-            IndexWidth::Bits16 => Self::Bits16(convert(&values).into()),
             IndexWidth::Bits32 => Self::Bits32(values.into()),
-            IndexWidth::Bits64 => Self::Bits64(convert(&values).into()),
+            _ => Self::converted(&values, width),
+        }
+    }
+
+    fn converted<I: Index>(values: &[I], width: IndexWidth) -> Self {
+        match width {
+            IndexWidth::Bits16 => Self::Bits16(convert(values).into()),
+            IndexWidth::Bits32 => Self::Bits32(convert(values).into()),
+            IndexWidth::Bits64 => Self::Bits64(convert(values).into()),
         }
     }
 
@@ -216,14 +237,23 @@ impl<'a> Encoding<'a> {
         options: &EncodeOptions<'a>,
         at_width: fn(&'a [I], IndexWidth) -> Indices<'a>,
     ) -> Result<Self, EncodeError> {
-        let mut encoding = Self::of_levels(Kind::Sig, &arrays.first, arrays.num_simplices, largest(arrays), options)?;
+        // Beside pairs, pointers, lists and flags end where the (d−1)-simplices begin.
+        let pairs = if options.pairs { pairs(arrays)? } else { None };
+        let listed = if pairs.is_some() { arrays.ids(arrays.first.len() - 2).start } else { arrays.pointers.len() };
+        let lists = arrays.pointers.get(listed).map_or(arrays.lists.len(), |offset| offset.to_usize());
+        let (pointers, lists) = (&arrays.pointers[..listed], &arrays.lists[..lists]);
+        let largest = largest(arrays, listed);
+        let mut encoding = Self::of_levels(Kind::Sig, &arrays.first, arrays.num_simplices, largest, options)?;
         let width = encoding.width;
         encoding.indices.extend([
             (SectionKind::Boundary, at_width(&arrays.boundary, width)),
-            (SectionKind::Pointers, at_width(&arrays.pointers, width)),
-            (SectionKind::Lists, at_width(&arrays.lists, width)),
+            (SectionKind::Pointers, at_width(pointers, width)),
+            (SectionKind::Lists, at_width(lists, width)),
         ]);
-        encoding.flags = Some((&arrays.flags, arrays.pointers.len()));
+        encoding.flags = Some((&arrays.flags[..listed.div_ceil(8)], listed));
+        if let Some(pairs) = pairs {
+            encoding.indices.push((SectionKind::Pairs, Indices::converted(&pairs, width)));
+        }
         if options.tree {
             encoding.indices.push((SectionKind::ChildOffsets, at_width(&arrays.child_offsets, width)));
             let least = width_of_vertices(arrays.ids(0).len());
@@ -400,12 +430,34 @@ fn width_of_vertices(count: usize) -> IndexWidth {
     IndexWidth::least_for(count as u64).unwrap_or(IndexWidth::Bits64)
 }
 
-/// The largest id or list offset.
-fn largest<I: Index>(arrays: &SigArrays<I>) -> u64 {
+/// The largest id or list offset, where the first `listed` simplices have pointers.
+fn largest<I: Index>(arrays: &SigArrays<I>, listed: usize) -> u64 {
     let last_id = arrays.num_simplices.saturating_sub(1);
-    // Pointers of dimension d − 1 are never flagged and lists are in id order: the last pointer is the largest offset.
-    let last_list = arrays.pointers.last().map_or(0, |offset| offset.to_usize());
+    // Lists are in id order, so the last pointer that is no id is the largest offset; ids are not larger than the last one.
+    let is_offset = |&simplex: &usize| arrays.flags[simplex / 8] >> (simplex % 8) & 1 == 0;
+    let last_list = (0..listed).rev().find(is_offset).map_or(0, |simplex| arrays.pointers[simplex].to_usize());
     last_id.max(last_list) as u64
+}
+
+/// The d-simplices of each (d−1)-simplex, two indices each; `None` in dimension 0 and of the empty complex.
+fn pairs<I: Index>(arrays: &SigArrays<I>) -> Result<Option<Vec<I>>, EncodeError> {
+    let Some(dim @ 1..) = arrays.dim() else { return Ok(None) };
+    let mut pairs = Vec::with_capacity(2 * arrays.ids(dim - 1).len());
+    for simplex in arrays.ids(dim - 1) {
+        let list = &arrays.lists[arrays.pointers[simplex].to_usize()..];
+        // Clusters of one dimension more are simplices: the list has them all.
+        match *list {
+            [one, ..] if one == I::STOP => pairs.extend([I::STOP, I::STOP]),
+            // A stop code ends the pair as it ends the list.
+            [one, other, ..] if other == I::STOP => pairs.extend([one, I::STOP]),
+            [one, other, end, ..] if end == I::STOP => pairs.extend([one, other]),
+            _ => {
+                let cofaces = list.iter().take_while(|&&entry| entry != I::STOP).count();
+                return Err(EncodeError::Crowded { simplex, dim, cofaces });
+            }
+        }
+    }
+    Ok(Some(pairs))
 }
 
 /// The CRC-32 of a file's checksums, at the speed of the hardware.

@@ -88,7 +88,8 @@ pub enum RebuildError {
 /// [`RebuildError`]: the first simplex that differs, or why there is nothing to compare with.
 pub fn rebuild<I: Index>(complex: &Complex<'_, I>, options: &BuildOptions<'_>) -> Result<(), RebuildError> {
     let built = build_again(complex, options)?;
-    let encode = EncodeOptions { width: Some(I::WIDTH), tree: false, checksums: false, ..EncodeOptions::default() };
+    let (width, pairs) = (Some(I::WIDTH), complex.has_pairs());
+    let encode = EncodeOptions { width, pairs, tree: false, checksums: false, ..EncodeOptions::default() };
     let bytes = Encoding::new(&built, &encode)?.to_bytes()?;
     drop(built);
     let loaded = super::Loaded::from_file_bytes(bytes)?;
@@ -120,7 +121,8 @@ fn compare<I: Index>(found: &Complex<'_, I>, expected: &Complex<'_, I>) -> Resul
             return Err(RebuildError::Count { dim, found, expected });
         }
     }
-    let sections = [SectionKind::Boundary, SectionKind::Pointers, SectionKind::Lists, SectionKind::Flags];
+    let sections =
+        [SectionKind::Boundary, SectionKind::Pointers, SectionKind::Lists, SectionKind::Flags, SectionKind::Pairs];
     let (have, must) = (found.container(), expected.container());
     let Some(section) = sections.into_iter().find(|&kind| have.section(kind) != must.section(kind)) else {
         return Ok(());
