@@ -15,8 +15,9 @@ use sig_tools::store::{EncodeOptions, Encoding};
 fn conforms(words: &[Word]) -> Result<(), MapError> {
     let oracle = Oracle::new(words);
     let mut soup = Soup::new(Labels::Numbered(oracle.of_dim(0).len()), false);
-    for word in words {
-        soup.push(&word.iter().map(|&vertex| u32::try_from(vertex).unwrap()).collect::<Vec<_>>());
+    // The oracle numbers the vertices from 0.
+    for top in oracle.tops() {
+        soup.push(&oracle.word(top).iter().map(|&vertex| u32::try_from(vertex).unwrap()).collect::<Vec<_>>());
     }
     let built = build(soup, &BuildOptions { order: VertexOrder::Input, ..BuildOptions::default() }).unwrap();
     let bytes = Encoding::new(&built, &EncodeOptions::default()).unwrap().to_bytes().unwrap();
