@@ -76,9 +76,9 @@ pub enum MapError {
 }
 
 impl CombinatorialMap {
-    /// The map of a complex that is a closed orientable quasi-manifold of dimension n ≥ 2, connected or not: every simplex is a face of an
-    /// n-simplex; around a simplex of dimension n − 2 or less the n-simplices are one cluster, which the flags of a SIG say;
-    /// each (n−1)-simplex is a face of exactly two n-simplices; and these can be oriented.
+    /// The map of a complex that is a closed orientable quasi-manifold of dimension n ≥ 2, connected or not: every simplex is
+    /// a face of an n-simplex; around a simplex of dimension n − 2 or less the n-simplices are one cluster, which the flags of
+    /// a SIG say; each (n−1)-simplex is a face of exactly two n-simplices; and these can be oriented.
     ///
     /// The orientation of each component is that which the complex stores for its least n-simplex, where it stores any.
     ///
