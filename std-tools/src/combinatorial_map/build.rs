@@ -140,7 +140,8 @@ impl Facets {
     /// Whether the complex is a closed quasi-manifold.
     fn check<I: Index>(&self, complex: &Complex<'_, I>) -> Result<(), MapError> {
         let of_dim = self.dim;
-        for simplex in (0..self.starts[0]).map(SimplexId::new).filter(|&simplex| !complex.is_single_cluster(simplex)) {
+        let is_bad = |&simplex: &SimplexId| !complex.is_single_cluster(simplex);
+        if let Some(simplex) = (0..self.starts[0]).map(SimplexId::new).find(is_bad) {
             let name = simplex_name(complex, simplex);
             let dim = complex.dim_of(simplex).unwrap_or(0);
             let clusters = complex.partial_coboundary(simplex).count();

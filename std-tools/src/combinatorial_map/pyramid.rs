@@ -117,12 +117,12 @@ impl Pyramid {
     pub fn level(&self, level: usize) -> CombinatorialMap {
         let mut map = self.base.clone();
         let is_lost = |cell: u32| self.lost[cell as usize] as usize <= level && self.lost[cell as usize] != NONE;
-        let survivors = self.survivors(&is_lost);
+        let survivors = self.survivors(is_lost);
         let kept = |dart: &u32| !is_lost(self.base.c(1, *dart));
         for dart in self.base.dart_numbers() {
             let row = &mut map.darts[5 * dart as usize..][..5];
             if kept(&dart) {
-                row[0] = self.next(dart, &kept);
+                row[0] = self.next(dart, kept);
                 row[2] = survivors[row[2] as usize];
                 row[4] = survivors[row[4] as usize];
             } else {
