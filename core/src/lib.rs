@@ -36,11 +36,13 @@
 //! | the SIG's arrays as a simplex tree | [`Complex::as_tree`], [`tree`] |
 //! | code for either | [`Relations`] |
 //! | memory for queries | [`Scratch`], [`StaticScratch`] |
+//! | cells and their incidences | [`mod@cell`] |
 //! | the bytes: header, sections, checksums, encoding | [`mod@format`] |
 //! | embedding a file in a program | [`include_aligned!`] |
 //! | the paper's storage formulas | [`storage`] |
 #![no_std]
 
+pub mod cell;
 pub mod complex;
 mod embed;
 pub mod format;
@@ -51,6 +53,7 @@ pub mod storage;
 pub mod tree;
 mod view;
 
+pub use cell::{Arc, CellId, Incidence, PackedArc};
 pub use complex::{AnyComplex, Complex};
 pub use embed::Aligned;
 pub use format::FormatError;

@@ -26,6 +26,8 @@
 //! | a simplex tree in level order | [`frozen`] | [`frozen::FrozenTree`] |
 //! | a simplex tree to the whole arrays | [`mod@build`] | [`build::complete`] |
 //! | contract edges of the whole arrays | [`mod@contract`] | [`contract::contract`] |
+//! | closed manifolds by darts and permutations | [`combinatorial_map`] | [`combinatorial_map::CombinatorialMap`] |
+//! | cell complexes that change | [`mod@cells`] | [`cells::CellComplex`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
@@ -52,7 +54,9 @@
 pub mod analysis;
 pub mod baselines;
 pub mod build;
+pub mod cells;
 pub mod chart;
+pub mod combinatorial_map;
 pub mod compare;
 pub mod contract;
 pub mod distances;

@@ -2,6 +2,7 @@
 
 mod baselines;
 mod builder;
+mod combinatorial_map;
 mod format;
 mod format_book;
 mod fuzz_corpus;

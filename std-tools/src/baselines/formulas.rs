@@ -7,6 +7,7 @@ use sig_core::storage::{ClusterCounts, Storage};
 use sig_core::{Complex, Dim, Index, SimplexId};
 
 use crate::analysis::Classes;
+use crate::combinatorial_map::{darts_of_simplex, map_integers};
 
 /// The numbers of a complex that the formulas are made of.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -98,6 +99,14 @@ impl Numbers {
         let both = |p: Dim| if p > 0 { 2 * (p + 1) } else { 0 };
         let start = |p: Dim| usize::from(p + 1 < self.dims());
         let integers = Sum::of((0..self.dims()).map(|p| (both(p) + start(p), self.n(p))));
+        Formula { integers, bits: Sum::default() }
+    }
+
+    /// A combinatorial map: mcc-2012, section 8, for (n+1)!/2 darts an n-simplex. Asked for a complex that it represents.
+    #[must_use]
+    pub fn combinatorial_map(&self) -> Formula {
+        let times = |dim: Dim| darts_of_simplex(dim).map_or(0, |darts| map_integers(dim, darts));
+        let integers = Sum::of(self.dim().map(|dim| (times(dim), self.n(dim))));
         Formula { integers, bits: Sum::default() }
     }
 

@@ -7,8 +7,9 @@
 //! | [`IndexedAdjacencies`] (IA) | pseudo-manifolds of any dimension | the d-simplices | by looking at all of them |
 //! | [`TriangleSegment`] (TS) | complexes of dimension up to 2 | vertices, triangles | around vertices and edges |
 //! | [`NonManifoldIndexed`] (NMIA) | complexes of dimension up to 3 | vertices, top simplices | around vertices and edges |
+//! | [combinatorial map](crate::combinatorial_map) | closed orientable quasi-manifolds | darts, the cells of each | around cells |
 //!
-//! The last three are built from the [`Tops`] of a complex, name a simplex as a [`Face`] of a top simplex, and are asked
+//! IA, TS and NMIA are built from the [`Tops`] of a complex, name a simplex as a [`Face`] of a top simplex, and are asked
 //! through a [`Session`]. Each holds the integers that the paper lists for it, at a width of the caller's choice, and no
 //! others; [`formulas`] has the paper's numbers.
 //!

@@ -2,6 +2,8 @@
 
 use sig_core::Dim;
 
+use crate::combinatorial_map::MapError;
+
 /// Why a structure cannot represent a complex; the simplex is the first, in canonical order, that it has no room for, by
 /// the labels of its vertices.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
@@ -47,4 +49,7 @@ pub enum Refusal {
         /// The width of the integers.
         bits: u32,
     },
+    /// What a combinatorial map has no room for.
+    #[error(transparent)]
+    NoMap(#[from] MapError),
 }

@@ -21,7 +21,8 @@ use super::{Threads, UsageError, progress};
 ///
 /// Builds each structure that can represent the complex from its top simplices, at the least width of integers that holds
 /// it: the SIG; the incidence graph (IG); the indexed structure with adjacencies (IA) for pseudo-manifolds; the
-/// triangle-segment structure (TS) for dimension 2; the non-manifold one (NMIA) for dimension 3. Prints what each takes by
+/// triangle-segment structure (TS) for dimension 2; the non-manifold one (NMIA) for dimension 3; the
+/// combinatorial map (map) for closed orientable quasi-manifolds. Prints what each takes by
 /// the paper's formula and measured, and how long each relation takes on simplices drawn at random: mean and, in
 /// brackets, the slowest. Other programs on the machine show in the times.
 #[derive(clap::Args)]

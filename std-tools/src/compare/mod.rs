@@ -18,7 +18,8 @@ use crate::baselines::formulas::{Formula, Numbers};
 use crate::baselines::{
     IndexedAdjacencies, NonManifoldIndexed, Refusal, Session, Sig, Structure, Tops, TriangleSegment,
 };
-use crate::build::{BuildError, BuildOptions, build, narrow};
+use crate::build::{BuildError, BuildOptions, Built, build, narrow};
+use crate::combinatorial_map::{CombinatorialMap, Darts};
 use crate::incidence_graph::{IncidenceError, IncidenceGraph, Walk};
 use crate::store::{EncodeError, EncodeOptions, Encoding};
 use crate::{Loaded, OwnedScratch};
@@ -76,13 +77,14 @@ pub struct Entry {
 }
 
 /// The structures in the order of the table; all others are measured against the first.
-pub const STRUCTURES: [Entry; 6] = [
+pub const STRUCTURES: [Entry; 7] = [
     Entry { name: "SIG", formula: Numbers::sig, measure: sig },
     Entry { name: "SIG pairs", formula: Numbers::sig_pairs, measure: sig_pairs },
     Entry { name: "IG", formula: Numbers::incidence_graph, measure: incidence_graph },
     Entry { name: "IA", formula: Numbers::indexed, measure: indexed },
     Entry { name: "TS", formula: Numbers::triangle_segment, measure: triangle_segment },
     Entry { name: "NMIA", formula: Numbers::non_manifold_indexed, measure: non_manifold_indexed },
+    Entry { name: "map", formula: Numbers::combinatorial_map, measure: combinatorial_map },
 ];
 
 /// What is compared, and what is known of the answers so far.
@@ -335,4 +337,16 @@ fn triangle_segment(subject: &mut Subject<'_>) -> Result<Measured, CompareError>
 
 fn non_manifold_indexed(subject: &mut Subject<'_>) -> Result<Measured, CompareError> {
     at_least_width!(subject, NonManifoldIndexed, new, Session, [u16], u32)
+}
+
+/// A map is made of a SIG, which is built first.
+fn combinatorial_map(subject: &mut Subject<'_>) -> Result<Measured, CompareError> {
+    let (seconds, map) = timed(|| {
+        let built = build(subject.tops.numbered(), &BuildOptions::default())?;
+        // A refusal names a simplex by these.
+        let built = Built { labels: subject.tops.soup().labels.clone(), ..built };
+        let file = Loaded::from_file_bytes(Encoding::new(&built, &EncodeOptions::default())?.to_bytes()?)?;
+        Ok::<_, CompareError>(with_complex!(complex(&file)?, complex => CombinatorialMap::new(&complex)))
+    });
+    Ok(map?.map(|map| subject.ask(seconds, size_of::<u32>(), Darts::new(&map))).map_err(Refusal::from))
 }

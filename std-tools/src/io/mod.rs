@@ -7,6 +7,7 @@
 //!
 //! `io` knows files and soups; it knows nothing of complexes.
 
+pub(crate) mod cells;
 mod cone;
 mod detect;
 mod error;

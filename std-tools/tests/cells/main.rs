@@ -1,0 +1,12 @@
+//! Cell complexes and their Euler operators against the definitions.
+
+// Test data are small.
+#![allow(clippy::cast_possible_truncation)]
+
+mod betti;
+mod model;
+mod operators;
+#[allow(dead_code, reason = "shared with the tests of the builder")]
+#[path = "../build/samples.rs"]
+mod samples;
+mod text;
