@@ -146,7 +146,7 @@ fn pyramid<I: Index>(name: &str, complex: &Complex<'_, I>, base: CombinatorialMa
 fn closed<I: Index>(complex: &Complex<'_, I>) -> Option<Soup> {
     let n = complex.dim().filter(|&n| n == 3)?;
     let words = |dim| complex.simplices_of_dim(dim);
-    let word = |simplex| complex.vertices(simplex).map(|vertex| vertex.index() as u32).collect::<Vec<u32>>();
+    let word = |simplex| complex.vertices(simplex).map(|vertex| narrow(vertex.index())).collect::<Vec<u32>>();
     let boundary: Vec<Vec<u32>> =
         words(n - 1).filter(|&facet| complex.partial_coboundary(facet).count() == 1).map(word).collect();
     // The component of a triangle by its edges: those of a boundary that touches itself in a vertex are apart.
@@ -178,7 +178,7 @@ fn closed<I: Index>(complex: &Complex<'_, I>) -> Option<Soup> {
     let mut soup = Soup::new(Labels::Numbered(apexes), false);
     words(n).map(word).for_each(|tetrahedron| soup.push(&tetrahedron));
     for (mut triangle, apex) in boundary.into_iter().zip(component) {
-        triangle.push(apex as u32);
+        triangle.push(narrow(apex));
         soup.push(&triangle);
     }
     Some(soup)
@@ -197,4 +197,9 @@ fn read(mesh: &Path) -> Result<Soup, Box<dyn Error>> {
     let cells = rest.get(3 * *vertices as usize..).ok_or("too short")?.chunks_exact(4);
     cells.take(*tetrahedra as usize).for_each(|tetrahedron| soup.push(tetrahedron));
     Ok(soup)
+}
+
+/// The number of a vertex; complexes here have far fewer than 2³².
+fn narrow(vertex: usize) -> u32 {
+    u32::try_from(vertex).expect("a number of 32 bits")
 }

@@ -30,7 +30,7 @@ pub(crate) fn with_complex<T>(words: &[Word], check: impl FnOnce(&Complex<'_, u1
 }
 
 pub(crate) fn map_of(words: &[Word]) -> Result<CombinatorialMap, MapError> {
-    with_complex(words, |complex| CombinatorialMap::new(complex))
+    with_complex(words, CombinatorialMap::new)
 }
 
 /// Words whose letters are the digits of `text`.
