@@ -47,6 +47,7 @@ pub mod format;
 pub mod id;
 pub mod relations;
 pub mod scratch;
+mod slices;
 pub mod storage;
 pub mod tree;
 mod view;

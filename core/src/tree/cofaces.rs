@@ -259,7 +259,7 @@ impl<I: Index> Tree<'_, I> {
         level: &mut Queue<'_, I>,
     ) -> Result<Dim, ScratchError> {
         let common = |place| common.get(place).filter(|_| wanted.has_room(0, 1));
-        let own = common(0).map_or(wanted.size(), |(_, before)| before as usize).clamp(1, wanted.size().max(1));
+        let own = common(0).map_or(wanted.size(), |(_, before)| before as usize).min(wanted.size()).max(1);
         let mut next = 0;
         while let Some((vertex, 0)) = common(next) {
             next += 1;

@@ -29,6 +29,7 @@ use heapless::Vec;
 use crate::complex::{Levels, Sections, SimplexRange};
 use crate::format::{Column, Container, FormatError, Kind, SectionKind};
 use crate::id::{Dim, Index, MAX_DIM, SimplexId, VertexId};
+use crate::slices;
 use crate::view::{common_methods, find_word};
 
 /// A simplicial complex as its simplex tree, read where it lies: a file of kind *tree*, or the tree's sections of a SIG.
@@ -247,7 +248,7 @@ impl<'a, I: Index> Tree<'a, I> {
         }
         // A vertex is its own label.
         let _ = path.push(Node { id, label: id });
-        path.reverse();
+        slices::reverse(&mut path);
         path
     }
 }
