@@ -13,7 +13,7 @@ use core::ops::Range;
 
 use super::{Path, Tree};
 use crate::format::{Column, first_from};
-use crate::id::{Dim, Index, SimplexId};
+use crate::id::{Dim, Index, IndexWidth, SimplexId};
 use crate::relations::Simplices;
 use crate::scratch::{Found, Queue, Scratch, ScratchError};
 
@@ -198,10 +198,15 @@ impl<I: Index> Tree<'_, I> {
         let wanted = Wanted { path: &path, from: dims.start, to: dims.end.saturating_sub(1) };
         let num_common = queue.len();
         let (common, mut level) = queue.split();
+        // Never wider than an index where there are edges: opening refuses that, and it is less code.
         let gathered = match self.last_vertices {
             Column::U16(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
-            Column::U32(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
-            Column::U64(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
+            Column::U32(labels) if I::WIDTH >= IndexWidth::Bits32 => {
+                self.gather_words(&wanted, labels, &common, &mut level, found)
+            }
+            Column::U64(labels) if I::WIDTH >= IndexWidth::Bits64 => {
+                self.gather_words(&wanted, labels, &common, &mut level, found)
+            }
             _ => Ok(()),
         };
         gathered.map_err(|error| error.behind(num_common))

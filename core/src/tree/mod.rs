@@ -125,7 +125,7 @@ impl<'a, I: Index> Tree<'a, I> {
         let lower = if sections.both([SectionKind::LowerOffsets, SectionKind::LowerNeighbours])? {
             Some(LowerNeighbours {
                 offsets: sections.indices(SectionKind::LowerOffsets, Some(levels.ids(0).len() + 1))?,
-                vertices: sections.vertices(SectionKind::LowerNeighbours, levels.ids(1).len())?,
+                vertices: sections.vertices::<I>(SectionKind::LowerNeighbours, levels.ids(1).len())?,
             })
         } else {
             None
@@ -135,7 +135,7 @@ impl<'a, I: Index> Tree<'a, I> {
             levels,
             boundary,
             child_offsets: sections.indices(SectionKind::ChildOffsets, Some(num_offsets))?,
-            last_vertices: sections.vertices(SectionKind::LastVertices, levels.total())?,
+            last_vertices: sections.vertices::<I>(SectionKind::LastVertices, levels.total())?,
             lower,
         })
     }
