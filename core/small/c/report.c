@@ -115,6 +115,9 @@ static void find_all(const sig_complex *complex, sig_scratch *scratch, size_t to
 static void grow(const sig_complex *complex) {
     sig_scratch scratch;
     size_t bytes = sig_memory_bytes(complex, 0), count = 0;
+    if (bytes == 0) {
+        return; /* Without simplices there is nothing to grow for. */
+    }
     expect(sig_scratch_init(complex, (uint8_t *)memory, bytes - 1, &scratch), SIG_STATUS_MEMORY, "no room for marks");
     int status, errors = 0;
     do {
@@ -144,6 +147,8 @@ static void refuse(const uint8_t *bytes, size_t length, const sig_complex *compl
     expect(sig_open(bytes + 1, length - 1, &other), SIG_STATUS_NOT_A_FILE, "no file");
     expect(sig_open(NULL, length, &other), SIG_STATUS_ARGUMENT, "no bytes");
     expect(sig_open(bytes, length, NULL), SIG_STATUS_ARGUMENT, "no complex");
+    expect(sig_open(bytes, SIZE_MAX, &other), SIG_STATUS_ARGUMENT, "more bytes than there can be");
+    expect(sig_ask(complex, scratch, SIG_RELATION_STAR, 0, 0, found, SIZE_MAX, &count), SIG_STATUS_ARGUMENT, "as many entries");
     expect(sig_ask(complex, scratch, SIG_RELATION_CLUSTER + 1, 0, 0, found, MOST, &count), SIG_STATUS_ARGUMENT, "no relation");
     expect(sig_ask(complex, scratch, SIG_RELATION_STAR, SIZE_MAX, 0, found, MOST, &count), SIG_STATUS_OK, "no simplex");
     if (count != 0) {

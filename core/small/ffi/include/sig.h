@@ -25,7 +25,7 @@ enum sig_status
  {
   // It is done.
   SIG_STATUS_OK = 0,
-  // A pointer is null or not aligned, or there is no relation of that number.
+  // A pointer is null or not aligned, a length is more than memory can hold, or there is no relation of that number.
   SIG_STATUS_ARGUMENT = 1,
   // The bytes are no file, or not a whole one, or of another version.
   SIG_STATUS_NOT_A_FILE = 2,

@@ -28,7 +28,7 @@ pub use scratch::{SCRATCH_WORDS, Scratch};
 pub enum Status {
     /// It is done.
     Ok = 0,
-    /// A pointer is null or not aligned, or there is no relation of that number.
+    /// A pointer is null or not aligned, a length is more than memory can hold, or there is no relation of that number.
     Argument = 1,
     /// The bytes are no file, or not a whole one, or of another version.
     NotAFile = 2,
@@ -91,7 +91,7 @@ const _: () = assert!(MAX_DIM == sig_core::MAX_DIM);
 /// `bytes` leads to `length` bytes, `complex` to a sig_complex, or they are null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sig_open(bytes: *const u8, length: usize, complex: *mut Complex) -> Status {
-    if bytes.is_null() || !is_valid(complex) {
+    if !is_array(bytes, length) || !is_valid(complex) {
         return Status::Argument;
     }
     // SAFETY: the caller promises so many bytes, which do not change.
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn sig_open(bytes: *const u8, length: usize, complex: *mut
 #[cfg(feature = "checks")]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sig_verify(bytes: *const u8, length: usize) -> Status {
-    if bytes.is_null() {
+    if !is_array(bytes, length) {
         return Status::Argument;
     }
     // SAFETY: the caller promises so many bytes.
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn sig_verify(bytes: *const u8, length: usize) -> Status {
 #[cfg(feature = "checks")]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sig_swap_byte_order(bytes: *mut u8, length: usize) -> Status {
-    if bytes.is_null() {
+    if !is_array(bytes, length) {
         return Status::Argument;
     }
     // SAFETY: the caller promises so many bytes that nobody else reads.
@@ -184,7 +184,7 @@ pub unsafe extern "C" fn sig_find(
 ) -> Status {
     // SAFETY: the caller promises an open complex.
     let any = unsafe { opened(complex) };
-    let Some(any) = any.filter(|_| is_valid(vertices) && is_valid(simplex)) else { return Status::Argument };
+    let Some(any) = any.filter(|_| is_array(vertices, length) && is_valid(simplex)) else { return Status::Argument };
     // SAFETY: the caller promises so many vertices.
     let vertices = unsafe { core::slice::from_raw_parts(vertices, length) };
     let mut word = [VertexId::new(0); MAX_DIM + 1];
@@ -223,7 +223,7 @@ pub unsafe extern "C" fn sig_scratch_init(
 ) -> Status {
     // SAFETY: the caller promises an open complex.
     let any = unsafe { opened(complex) };
-    let Some(any) = any.filter(|_| !memory.is_null() && is_valid(scratch)) else { return Status::Argument };
+    let Some(any) = any.filter(|_| is_array(memory, bytes) && is_valid(scratch)) else { return Status::Argument };
     // SAFETY: the caller promises so many bytes, and that they are the scratch's alone.
     let memory: &'static mut [u8] = unsafe { core::slice::from_raw_parts_mut(memory, bytes) };
     memory.fill(0);
@@ -260,7 +260,7 @@ pub unsafe extern "C" fn sig_ask(
     let any = unsafe { opened(complex) };
     let question = Relation::from_code(relation).map(|relation| (relation, argument));
     let (Some(any), Some(question)) = (any, question) else { return Status::Argument };
-    if !is_valid(scratch) || !is_valid(found) || !is_valid(count) {
+    if !is_valid(scratch) || !is_array(found, capacity) || !is_valid(count) {
         return Status::Argument;
     }
     // SAFETY: the caller promises a scratch that was made, used by nobody else now.
@@ -298,6 +298,11 @@ unsafe fn opened(complex: *const Complex) -> Option<Opened> {
 /// Whether a pointer is not null, and aligned.
 fn is_valid<T>(pointer: *const T) -> bool {
     !pointer.is_null() && pointer.is_aligned()
+}
+
+/// Whether that, and so many elements are no more than memory can hold.
+fn is_array<T>(pointer: *const T, length: usize) -> bool {
+    is_valid(pointer) && length <= isize::MAX.unsigned_abs() / size_of::<T>()
 }
 
 /// Never called: nothing in the core panics.
