@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sig_core::format::{Column, Container, Encoder, FormatError, Kind, Rule, Section, SectionKind, TableError};
 use sig_core::{AnyComplex, Complex, IndexWidth, Tree, with_complex};
-use sig_tests::encode::{Names, Options, encode};
+use sig_tests::encode::{Names, Options, encode, in_host_order};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::strategies;
@@ -234,7 +234,7 @@ fn optional_sections() {
     for (row, offset) in [(0, 1u64), (3, 0), (8, 7), (8, 1 << 40), (2, u64::MAX)] {
         let mut damaged = bytes.clone();
         let at = section(&bytes, SectionKind::LabelOffsets).start + 8 * row;
-        damaged[at..at + 8].copy_from_slice(&offset.to_le_bytes());
+        damaged[at..at + 8].copy_from_slice(&offset.to_ne_bytes());
         let (section, _, rule) = broken(&damaged);
         assert_eq!((section, rule), (SectionKind::LabelOffsets, Rule::Labels), "offset {row} set to {offset}");
     }
@@ -308,7 +308,7 @@ fn encode_sections(kind: Kind, dims: usize, num_simplices: u64, sections: &[Sect
     let encoder = Encoder::new(kind, IndexWidth::Bits16, dims, num_simplices, sections).unwrap();
     let mut bytes = AlignedBytes::zeroed(usize::try_from(encoder.file_bytes()).unwrap());
     encoder.encode(&mut bytes).unwrap();
-    bytes
+    in_host_order(bytes)
 }
 
 /// The least width for the vertices is never wider than an index, but where there are no edges.
