@@ -40,6 +40,13 @@
 //! | the bytes: header, sections, checksums, encoding | [`mod@format`] |
 //! | embedding a file in a program | [`include_aligned!`] |
 //! | the paper's storage formulas | [`storage`] |
+//!
+//! # Small machines
+//!
+//! A program that links this crate needs neither `std` nor an allocator, and gets neither formatting nor a way to panic from
+//! it, built with optimisation: all relations and opening take about 20 KB of Thumb-2 code for one width of indices. Memory
+//! for queries is one bit a simplex, and for each simplex of the largest star two indices and a mask: see [`Scratch`].
+//! `core/small` in the project's repository has a firmware, the library for C and the modules for WebAssembly.
 #![no_std]
 
 pub mod cell;
@@ -49,6 +56,7 @@ pub mod format;
 pub mod id;
 pub mod relations;
 pub mod scratch;
+mod slices;
 pub mod storage;
 pub mod tree;
 mod view;

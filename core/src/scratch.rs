@@ -8,6 +8,7 @@ use core::fmt;
 use heapless::Vec;
 
 use crate::id::Index;
+use crate::slices;
 
 /// Bits a word of marks.
 const WORD_BITS: usize = u32::BITS as usize;
@@ -243,8 +244,8 @@ impl<I: Index> Queue<'_, I> {
     /// Takes out the first entries; those behind them move up.
     pub(crate) fn remove_first(&mut self, count: usize) {
         if count <= self.len && self.len <= self.ids.len().min(self.masks.len()) {
-            self.ids.copy_within(count..self.len, 0);
-            self.masks.copy_within(count..self.len, 0);
+            slices::move_down(self.ids.get_mut(..self.len).unwrap_or_default(), count);
+            slices::move_down(self.masks.get_mut(..self.len).unwrap_or_default(), count);
             self.len -= count;
         }
     }

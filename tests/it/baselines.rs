@@ -251,10 +251,10 @@ fn of_real_files() {
         let comparison = compare(&case.tops, options).unwrap();
         let holding: Vec<&str> =
             comparison.structures.iter().filter(|row| row.refused.is_none()).map(|row| row.name).collect();
-        assert_eq!(
-            holding,
-            expected.iter().map(|&name| if name == "pairs" { "SIG pairs" } else { name }).collect::<Vec<_>>()
-        );
+        // Of the ten, these are closed orientable manifolds; `combinatorial_map` tests what their maps answer.
+        let map = ["K3_16", "RP5_24"].contains(&name).then_some("map");
+        let expected = expected.iter().map(|&name| if name == "pairs" { "SIG pairs" } else { name }).chain(map);
+        assert_eq!(holding, expected.collect::<Vec<_>>(), "{name}");
         for row in comparison.structures.iter().filter(|row| row.refused.is_none()) {
             assert_eq!((row.integers, row.bits), (row.formula_integers, row.formula_bits), "{name}: {}", row.name);
             assert!(!row.relations.is_empty());

@@ -1,9 +1,9 @@
 //! `Complex::validate`: every valid file passes, and every rule that is broken is found, with its name and place.
 
 use proptest::prelude::*;
-use sig_core::format::{Container, FormatError, Rule, SectionKind};
-use sig_core::{AnyComplex, Complex, IndexWidth, with_complex};
-use sig_tests::encode::{Names, Options, encode};
+use sig_core::format::{Column, Container, Encoder, FormatError, Kind, Rule, Section, SectionKind, TableError};
+use sig_core::{AnyComplex, Complex, IndexWidth, Tree, with_complex};
+use sig_tests::encode::{Names, Options, encode, in_host_order};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::strategies;
@@ -34,12 +34,12 @@ fn section(bytes: &AlignedBytes, kind: SectionKind) -> std::ops::Range<usize> {
 
 fn get(bytes: &AlignedBytes, kind: SectionKind, element: usize) -> u16 {
     let at = section(bytes, kind).start + 2 * element;
-    u16::from_le_bytes([bytes[at], bytes[at + 1]])
+    u16::from_ne_bytes([bytes[at], bytes[at + 1]])
 }
 
 fn set(bytes: &mut AlignedBytes, kind: SectionKind, element: usize, value: u16) {
     let at = section(bytes, kind).start + 2 * element;
-    bytes[at..at + 2].copy_from_slice(&value.to_le_bytes());
+    bytes[at..at + 2].copy_from_slice(&value.to_ne_bytes());
 }
 
 /// 0123 is two tetrahedra on a triangle, with a dangling triangle and an edge: every kind of pointer occurs.
@@ -224,7 +224,7 @@ fn optional_sections() {
     // The text is cut by the offsets, so the label that is no UTF-8 is named by its end.
     assert_eq!(broken(&damaged), (SectionKind::LabelOffsets, 2, Rule::Labels));
     assert_eq!(damage(SectionKind::Provenance, &|bytes| bytes[3] = 0xFF), (3, Rule::Text));
-    let value = |value: f64| move |bytes: &mut [u8]| bytes[..8].copy_from_slice(&value.to_le_bytes());
+    let value = |value: f64| move |bytes: &mut [u8]| bytes[..8].copy_from_slice(&value.to_ne_bytes());
     for bad in [f64::NAN, -0.0] {
         assert_eq!(damage(SectionKind::Filtration, &value(bad)), (0, Rule::Filtration));
     }
@@ -234,7 +234,7 @@ fn optional_sections() {
     for (row, offset) in [(0, 1u64), (3, 0), (8, 7), (8, 1 << 40), (2, u64::MAX)] {
         let mut damaged = bytes.clone();
         let at = section(&bytes, SectionKind::LabelOffsets).start + 8 * row;
-        damaged[at..at + 8].copy_from_slice(&offset.to_le_bytes());
+        damaged[at..at + 8].copy_from_slice(&offset.to_ne_bytes());
         let (section, _, rule) = broken(&damaged);
         assert_eq!((section, rule), (SectionKind::LabelOffsets, Rule::Labels), "offset {row} set to {offset}");
     }
@@ -302,4 +302,37 @@ fn owner(oracle: &Oracle, bytes: &AlignedBytes, kind: SectionKind, element: usiz
             .rfind(|&simplex| usize::from(get(bytes, SectionKind::Pointers, simplex)) <= element),
         _ => None,
     }
+}
+
+fn encode_sections(kind: Kind, dims: usize, num_simplices: u64, sections: &[Section<'_>]) -> AlignedBytes {
+    let encoder = Encoder::new(kind, IndexWidth::Bits16, dims, num_simplices, sections).unwrap();
+    let mut bytes = AlignedBytes::zeroed(usize::try_from(encoder.file_bytes()).unwrap());
+    encoder.encode(&mut bytes).unwrap();
+    in_host_order(bytes)
+}
+
+/// The least width for the vertices is never wider than an index, but where there are no edges.
+#[test]
+fn last_vertices_are_no_wider_than_indices() {
+    let (oracle, bytes) = example();
+    let wide: Vec<u32> = oracle.words().iter().map(|word| u32::try_from(*word.last().unwrap()).unwrap()).collect();
+    let container = Container::from_bytes(&bytes).unwrap();
+    let mut sections: Vec<_> = container.sections().collect();
+    let entry = sections.iter().position(|section| section.kind == SectionKind::LastVertices).unwrap();
+    sections[entry].column = Column::U32(&wide);
+    let bytes = encode_sections(Kind::Sig, oracle.dims(), oracle.len() as u64, &sections);
+    let error = FormatError::Table { entry: u32::try_from(entry).unwrap(), error: TableError::ElementType(3) };
+    assert_eq!(Complex::<u16>::from_bytes(&bytes).unwrap_err(), error);
+    assert_eq!(Tree::<u16>::from_bytes(&bytes).unwrap_err(), error);
+
+    let vertices = u64::from(u16::MAX);
+    let last: Vec<u32> = (0..u32::from(u16::MAX)).collect();
+    let sections = [
+        Section::new(SectionKind::Lookup, Column::U16(&[0])),
+        Section::new(SectionKind::ChildOffsets, Column::U16(&[u16::MAX])),
+        Section::new(SectionKind::LastVertices, Column::U32(&last)),
+    ];
+    let bytes = encode_sections(Kind::Tree, 1, vertices, &sections);
+    let tree = Tree::<u16>::from_bytes(&bytes).unwrap();
+    assert_eq!((tree.validate(), tree.num_vertices()), (Ok(()), 65_535));
 }

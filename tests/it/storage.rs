@@ -6,7 +6,7 @@
 use proptest::prelude::*;
 use sig_core::storage::Storage;
 use sig_core::{AnyComplex, IndexWidth, with_complex};
-use sig_tests::encode::{Options, encode};
+use sig_tests::encode::{Options, encode, encode_file};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::strategies;
@@ -62,7 +62,7 @@ fn check_pairs(oracle: &Oracle, options: &Options) {
 
 fn check_lists(oracle: &Oracle, options: &Options) {
     let bytes = encode(oracle, options);
-    let table = sections(&bytes);
+    let table = sections(&encode_file(oracle, options));
     let count =
         |kind: u16| table.iter().filter(|(other, ..)| *other == kind).map(|(_, count, _)| *count).sum::<usize>();
     let section_bytes =
@@ -162,7 +162,7 @@ fn at_most_a_kilobyte_of_header_and_padding() {
     for simplices in [vec![], vec![vec![0]], known::seven_vertex_torus(), known::nine_vertex_complex_projective_plane()]
     {
         for width in IndexWidth::ALL {
-            let bytes = encode(&Oracle::new(&simplices), &Options::bare(width));
+            let bytes = encode_file(&Oracle::new(&simplices), &Options::bare(width));
             let sections: usize = sections(&bytes).iter().map(|(.., bytes)| bytes).sum();
             assert!(bytes.len() - sections <= 1024, "{} bytes of header and padding", bytes.len() - sections);
         }

@@ -1,7 +1,7 @@
 //! From an oracle to the bytes of a file, element by element as `FORMAT.md` defines it: a second implementation with
 //! which the builder is compared byte for byte.
 
-use sig_core::format::{Column, Encoder, Kind, Section, SectionKind};
+use sig_core::format::{Column, Encoder, Kind, Section, SectionKind, swap_byte_order};
 use sig_core::{Dim, IndexWidth};
 
 use crate::oracle::Oracle;
@@ -240,12 +240,21 @@ impl Arrays {
     }
 }
 
-/// The file of a complex, a SIG.
+/// A complex as a SIG, in the byte order of the host.
 ///
 /// # Panics
 /// If the complex does not fit in the width, or the options do not fit the complex.
 #[must_use]
 pub fn encode(oracle: &Oracle, options: &Options) -> AlignedBytes {
+    in_host_order(encode_file(oracle, options))
+}
+
+/// The file of a complex, a SIG.
+///
+/// # Panics
+/// If the complex does not fit in the width, or the options do not fit the complex.
+#[must_use]
+pub fn encode_file(oracle: &Oracle, options: &Options) -> AlignedBytes {
     encode_kind(
         Kind::Sig,
         oracle,
@@ -254,12 +263,33 @@ pub fn encode(oracle: &Oracle, options: &Options) -> AlignedBytes {
     )
 }
 
-/// The file of a complex, a simplex tree.
+/// A complex as a simplex tree, in the byte order of the host.
 ///
 /// # Panics
 /// If the complex does not fit in the width, or the options do not fit the complex.
 #[must_use]
 pub fn encode_tree(oracle: &Oracle, options: &Options) -> AlignedBytes {
+    in_host_order(encode_tree_file(oracle, options))
+}
+
+/// A file in the byte order of the host.
+///
+/// # Panics
+/// If it is none.
+#[must_use]
+pub fn in_host_order(mut file: AlignedBytes) -> AlignedBytes {
+    if cfg!(target_endian = "big") {
+        swap_byte_order(&mut file).unwrap();
+    }
+    file
+}
+
+/// The file of a complex, a simplex tree.
+///
+/// # Panics
+/// If the complex does not fit in the width, or the options do not fit the complex.
+#[must_use]
+pub fn encode_tree_file(oracle: &Oracle, options: &Options) -> AlignedBytes {
     let largest = oracle.len().saturating_sub(1) as u64;
     let least = IndexWidth::least_for(largest).expect("64 bits are enough");
     encode_kind(Kind::Tree, oracle, options.width.unwrap_or(least), options)

@@ -3,7 +3,7 @@
 
 use super::Levels;
 use crate::format::{Column, Container, FormatError, Kind, Rule, Section, SectionKind, TableError};
-use crate::id::Index;
+use crate::id::{Index, IndexWidth};
 
 /// Sections by kind, with the shapes that the format asks for.
 pub(crate) struct Sections<'c, 'a> {
@@ -83,10 +83,18 @@ impl<'a> Sections<'_, 'a> {
         Ok(bytes)
     }
 
-    /// The vertices of a section that must be there, of any width.
-    pub(crate) fn vertices(&self, kind: SectionKind, len: usize) -> Result<Column<'a>, FormatError> {
+    /// The vertices of a section that must be there, no wider than an index. Where all simplices are vertices, they may be as
+    /// many as the stop code, which takes more than an index.
+    pub(crate) fn vertices<I: Index>(&self, kind: SectionKind, len: usize) -> Result<Column<'a>, FormatError> {
         let section = self.required(kind)?;
-        if !matches!(section.column, Column::U16(_) | Column::U32(_) | Column::U64(_)) {
+        let widest = if self.container.header().dims < 2 { IndexWidth::Bits64 } else { I::WIDTH };
+        let fits = match section.column {
+            Column::U16(_) => true,
+            Column::U32(_) => widest >= IndexWidth::Bits32,
+            Column::U64(_) => widest >= IndexWidth::Bits64,
+            _ => false,
+        };
+        if !fits {
             return Err(self.element_error(&section));
         }
         self.check_len(&section, Some(len))?;

@@ -5,6 +5,7 @@ use super::container::Container;
 use super::header::RawHeader;
 use super::section::element_bytes;
 use super::table::{Entry, entry_start};
+use crate::slices;
 
 /// In which order the bytes of an integer stand.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -80,7 +81,7 @@ pub fn swap_byte_order(bytes: &mut [u8]) -> Result<(), FormatError> {
         let entry = Entry::read(bytes, entry_start(number), from);
         let section = bytes.get_mut(entry.range()).unwrap_or_default();
         for element in section.chunks_exact_mut(element_bytes(entry.element).unwrap_or(1)) {
-            element.reverse();
+            slices::reverse(element);
         }
     }
     for number in 0..header.sections {

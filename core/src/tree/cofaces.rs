@@ -14,7 +14,7 @@ use core::ops::Range;
 use super::neighbours::{Filter, MANY};
 use super::{Path, Tree};
 use crate::format::{Column, first_from};
-use crate::id::{Dim, Index, SimplexId};
+use crate::id::{Dim, Index, IndexWidth, SimplexId};
 use crate::relations::Simplices;
 use crate::scratch::{Found, Queue, Scratch, ScratchError};
 
@@ -210,10 +210,15 @@ impl<I: Index> Tree<'_, I> {
         queue.ids().iter().for_each(|vertex| wanted.common.insert(vertex.to_usize()));
         let num_common = queue.len();
         let (common, mut level) = queue.split();
+        // Never wider than an index where there are edges: opening refuses that, and it is less code.
         let gathered = match self.last_vertices {
             Column::U16(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
-            Column::U32(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
-            Column::U64(labels) => self.gather_words(&wanted, labels, &common, &mut level, found),
+            Column::U32(labels) if I::WIDTH >= IndexWidth::Bits32 => {
+                self.gather_words(&wanted, labels, &common, &mut level, found)
+            }
+            Column::U64(labels) if I::WIDTH >= IndexWidth::Bits64 => {
+                self.gather_words(&wanted, labels, &common, &mut level, found)
+            }
             _ => Ok(()),
         };
         gathered.map_err(|error| error.behind(num_common))
@@ -282,7 +287,7 @@ impl<I: Index> Tree<'_, I> {
         level: &mut Queue<'_, I>,
     ) -> Result<Dim, ScratchError> {
         let common = |place| common.get(place).filter(|_| wanted.has_room(0, 1));
-        let own = common(0).map_or(wanted.size(), |(_, before)| before as usize).clamp(1, wanted.size().max(1));
+        let own = common(0).map_or(wanted.size(), |(_, before)| before as usize).min(wanted.size()).max(1);
         let mut next = 0;
         while let Some((vertex, 0)) = common(next) {
             next += 1;

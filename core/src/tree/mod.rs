@@ -29,6 +29,7 @@ use heapless::Vec;
 use crate::complex::{Levels, Sections, SimplexRange};
 use crate::format::{Column, Container, FormatError, Kind, SectionKind, num_up_to};
 use crate::id::{Dim, Index, MAX_DIM, SimplexId, VertexId};
+use crate::slices;
 use crate::view::{common_methods, find_word};
 
 /// A simplicial complex as its simplex tree, read where it lies: a file of kind *tree*, or the tree's sections of a SIG.
@@ -124,7 +125,7 @@ impl<'a, I: Index> Tree<'a, I> {
         let lower = if sections.both([SectionKind::LowerOffsets, SectionKind::LowerNeighbours])? {
             Some(LowerNeighbours {
                 offsets: sections.indices(SectionKind::LowerOffsets, Some(levels.ids(0).len() + 1))?,
-                vertices: sections.vertices(SectionKind::LowerNeighbours, levels.ids(1).len())?,
+                vertices: sections.vertices::<I>(SectionKind::LowerNeighbours, levels.ids(1).len())?,
             })
         } else {
             None
@@ -134,7 +135,7 @@ impl<'a, I: Index> Tree<'a, I> {
             levels,
             boundary,
             child_offsets: sections.indices(SectionKind::ChildOffsets, Some(num_offsets))?,
-            last_vertices: sections.vertices(SectionKind::LastVertices, levels.total())?,
+            last_vertices: sections.vertices::<I>(SectionKind::LastVertices, levels.total())?,
             lower,
         })
     }
@@ -247,7 +248,7 @@ impl<'a, I: Index> Tree<'a, I> {
         }
         // A vertex is its own label.
         let _ = path.push(Node { id, label: id });
-        path.reverse();
+        slices::reverse(&mut path);
         path
     }
 }

@@ -89,7 +89,7 @@ impl<I: Index> Tree<'_, I> {
         let bound = |vertex: usize| lower.offsets.get(vertex).map_or(len, |offset| offset.to_usize());
         // Clamped, for in a buffer that is not a tree an offset may be anything.
         let start = bound(vertex).min(len);
-        Some(start..bound(vertex.saturating_add(1)).clamp(start, len))
+        Some(start..bound(vertex.saturating_add(1)).max(start).min(len))
     }
 }
 

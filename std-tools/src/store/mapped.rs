@@ -63,7 +63,7 @@ fn check(path: &Path, bytes: &[u8]) -> Result<(), OpenError> {
     let checked = View::from_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
     // Vertices alone take no bytes, so a small file may promise more of them than any memory has marks for.
     let simplices = with_view!(checked, complex => complex.num_simplices());
-    if simplices >> 36 != 0 && simplices / 64 > bytes.len() {
+    if simplices as u64 >> 36 != 0 && simplices / 64 > bytes.len() {
         return Err(OpenError::new(path, OpenErrorKind::TooManyVertices { vertices: simplices }));
     }
     Ok(())
