@@ -24,6 +24,7 @@
 //! | a simplex tree to the whole arrays | [`mod@build`] | [`build::complete`] |
 //! | contract edges of the whole arrays | [`mod@contract`] | [`contract::contract`] |
 //! | cell complexes that change | [`mod@cells`] | [`cells::CellComplex`] |
+//! | multi-resolution cell complexes | [`mod@mcc`] | [`mcc::simplify`](mcc::simplify()), [`mcc::Front`] |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
@@ -59,6 +60,7 @@ pub mod generate;
 pub mod graph;
 pub mod incidence_graph;
 pub mod io;
+pub mod mcc;
 pub mod names;
 pub mod points;
 pub mod proximity;

@@ -15,6 +15,7 @@ pub mod verify;
 mod view;
 
 pub use bytes::AlignedBytes;
+pub(crate) use encode::crc32;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
 pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
 pub use scratch::OwnedScratch;
