@@ -11,14 +11,18 @@ mod contract;
 mod expand;
 mod expansion;
 mod export;
+mod extract;
 mod frozen_output;
 mod info;
 mod input;
+mod interrupt;
 mod man;
+mod mcc_input;
 mod output;
 mod progress;
 mod query;
 mod rips;
+mod simplify;
 mod tree;
 mod tree_input;
 mod verify;
@@ -45,6 +49,8 @@ Examples:
   sig rips cloud.npy -r 0.3 -o c.sigc   the Rips complex of points
   sig witness c.npy --maxmin 300 -o w.sigc  the witness complex of 300 landmarks among them
   sig collapse c.sigc -o small.sigc     fewer simplices, the same homotopy type
+  sig simplify bunny.sigc -o bunny.mcc  a multi-resolution complex of the same homology
+  sig extract bunny.mcc -o b.vtu --count 500  a complex of it, as coarse as one likes
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
   sig verify bunny.sigc                 whether it is whole and right
@@ -61,6 +67,8 @@ enum Command {
     Expand(expand::Args),
     Collapse(collapse::Args),
     Contract(contract::Args),
+    Simplify(simplify::Args),
+    Extract(extract::Args),
     Info(info::Args),
     Query(query::Args),
     Tree(tree::Args),
@@ -79,6 +87,8 @@ impl Command {
             Self::Expand(args) => args.run(),
             Self::Collapse(args) => args.run(),
             Self::Contract(args) => args.run(),
+            Self::Simplify(args) => args.run(),
+            Self::Extract(args) => args.run(),
             Self::Info(args) => args.run(),
             Self::Query(args) => args.run(),
             Self::Tree(args) => args.run(),
@@ -156,8 +166,10 @@ fn handle_signals() -> io::Result<()> {
     let handled = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
     let mut signals = signal_hook::iterator::Signals::new(handled)?;
     std::thread::spawn(move || {
-        if let Some(signal) = signals.forever().next() {
-            atomic::abort(128 + signal);
+        for signal in signals.forever() {
+            if signal != SIGINT || !interrupt::take() {
+                atomic::abort(128 + signal);
+            }
         }
     });
     Ok(())

@@ -186,6 +186,12 @@ impl Field {
         Self { values: spread(complex, vertices, f32::NEG_INFINITY, f32::max) }
     }
 
+    /// The field with these values on the cells, by number.
+    #[must_use]
+    pub const fn of_cells(values: Vec<f32>) -> Self {
+        Self { values }
+    }
+
     /// A coordinate as a field; 0 where there are fewer.
     #[must_use]
     pub fn of_coordinate(complex: &CellComplex, coordinates: &Coordinates, axis: usize) -> Self {
@@ -197,7 +203,8 @@ impl Field {
 impl Criterion for Field {
     #[inline]
     fn cost(&self, _: &CellComplex, pair: Pair) -> f32 {
-        let difference = (self.values[pair.low.index()] - self.values[pair.high.index()]).abs();
+        let value = |cell: CellId| self.values.get(cell.index()).copied().unwrap_or(0.0);
+        let difference = (value(pair.low) - value(pair.high)).abs();
         // Two cells without vertices.
         if difference.is_nan() { 0.0 } else { difference }
     }

@@ -21,12 +21,14 @@
 
 mod criterion;
 mod front;
+mod picture;
 mod record;
 mod simplify;
 mod store;
 
 pub use criterion::{Criterion, Extent, Field, Free, Length, Pair};
 pub use front::{BadRefinement, Front, Moved, apply_in_order, members};
+pub use picture::{DrawError, Drawing, ViewAxis};
 pub use record::MultiResolution;
 pub use simplify::{SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
 pub use store::{MccFile, write_mcc};

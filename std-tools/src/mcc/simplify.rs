@@ -8,6 +8,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use rayon::prelude::*;
 use sig_core::CellId;
@@ -55,7 +56,7 @@ pub struct SimplifyOptions<'a> {
 }
 
 /// What a simplification did.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct SimplifyReport {
     /// Pairs killed.
     pub simplifications: usize,
@@ -63,6 +64,8 @@ pub struct SimplifyReport {
     pub put_back: usize,
     /// Rounds: of a batch each round, of steps each search for what is feasible, which is at least two if none is left.
     pub rounds: usize,
+    /// Seconds until the last one, without making the multi-resolution complex of them.
+    pub simplify_seconds: f64,
 }
 
 /// Simplifies a complex, and returns the multi-resolution complex of what was done.
@@ -74,12 +77,14 @@ pub fn simplify<C: Criterion + ?Sized>(
     criterion: &mut C,
     options: &SimplifyOptions<'_>,
 ) -> (MultiResolution, SimplifyReport) {
-    let (recorder, report) = run(&mut complex, criterion, options);
+    let start = Instant::now();
+    let (recorder, mut report) = run(&mut complex, criterion, options);
+    report.simplify_seconds = start.elapsed().as_secs_f64();
     (recorder.finish(&complex), report)
 }
 
 /// The simplification alone: what is left stands in `complex`.
-pub(super) fn run<C: Criterion + ?Sized>(
+fn run<C: Criterion + ?Sized>(
     complex: &mut CellComplex,
     criterion: &mut C,
     options: &SimplifyOptions<'_>,

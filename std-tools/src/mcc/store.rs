@@ -4,12 +4,13 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use sig_core::IndexWidth;
-use sig_core::format::{Column, Container, Encoder, FormatError, Kind, Section, SectionKind};
+use memmap2::Mmap;
+use sig_core::format::{Column, Encoder, FormatError, Kind, Section, SectionKind};
 use sig_core::mcc::Mcc;
 
 use super::record::MultiResolution;
 use crate::soup::{Coordinates, Scalars};
-use crate::store::{AlignedBytes, crc32};
+use crate::store::{AlignedBytes, OpenError, OpenErrorKind, crc32, map_file};
 
 /// Writes a multi-resolution complex, or, without refinements, a cell complex, with the coordinates of the vertices of the full
 /// complex, and checksums. The same complex gives the same bytes.
@@ -54,22 +55,36 @@ pub fn write_mcc(
     encoder.with_checksums().map_err(invalid)?.write_with(crc32, |piece| out.write_all(piece))
 }
 
-/// A file of a multi-resolution complex or a cell complex in memory.
-#[derive(Clone, Debug)]
+/// A file of a multi-resolution complex or a cell complex: mapped where it lies, or in memory.
+///
+/// Nobody may change a file while it is mapped: see [`Mapped`](crate::Mapped).
+#[derive(Debug)]
 pub struct MccFile {
-    bytes: AlignedBytes,
+    bytes: Bytes,
+}
+
+#[derive(Debug)]
+enum Bytes {
+    Mapped(Mmap),
+    Loaded(AlignedBytes),
 }
 
 impl MccFile {
-    /// Loads the file at `path`. Cost: reading it.
+    /// Maps the file at `path`; on a big-endian host it is loaded. Cost: O(number of sections).
     ///
     /// # Errors
-    /// Those of the system; [`FormatError`] as an [`io::Error`] of kind `InvalidData`.
-    pub fn open(path: impl AsRef<Path>) -> io::Result<Self> {
-        let mut file = std::fs::File::open(path)?;
-        let length = usize::try_from(file.metadata()?.len()).unwrap_or(0);
-        let bytes = AlignedBytes::read(&mut file, length)?;
-        Self::from_file_bytes(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    /// [`OpenError`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
+        let path = path.as_ref();
+        let wrong = |kind| OpenError::new(path, kind);
+        if cfg!(target_endian = "big") {
+            let mut file = std::fs::File::open(path).map_err(|error| wrong(OpenErrorKind::Io(error)))?;
+            let bytes = AlignedBytes::read(&mut file, 0).map_err(|error| wrong(OpenErrorKind::Io(error)))?;
+            return Self::from_file_bytes(bytes).map_err(|error| wrong(OpenErrorKind::Format(error)));
+        }
+        let map = map_file(path)?;
+        Mcc::from_bytes(&map).map_err(|error| wrong(OpenErrorKind::Format(error)))?;
+        Ok(Self { bytes: Bytes::Mapped(map) })
     }
 
     /// The complex in the bytes of a file as it lies on disk.
@@ -81,20 +96,24 @@ impl MccFile {
             sig_core::format::swap_byte_order(&mut bytes)?;
         }
         Mcc::from_bytes(&bytes)?;
-        Ok(Self { bytes })
+        Ok(Self { bytes: Bytes::Loaded(bytes) })
     }
 
     /// The complex. Cost: O(number of sections).
+    ///
+    /// # Panics
+    /// If another program has written into the header since the file was opened.
     #[must_use]
-    #[expect(clippy::missing_panics_doc, reason = "checked when the value was made, and nothing changes the bytes")]
     pub fn view(&self) -> Mcc<'_> {
-        Mcc::from_bytes(&self.bytes).expect("checked when loaded")
+        Mcc::from_bytes(self.bytes()).expect("a mapped file was changed by another program")
     }
 
-    /// Whether a file starts like one of these kinds.
+    /// The bytes in memory, in the host's byte order.
     #[must_use]
-    pub fn is_one(bytes: &[u8]) -> bool {
-        Container::from_bytes(bytes)
-            .is_ok_and(|container| matches!(container.header().kind, Kind::MultiResolution | Kind::CellComplex))
+    pub fn bytes(&self) -> &[u8] {
+        match &self.bytes {
+            Bytes::Mapped(map) => map,
+            Bytes::Loaded(bytes) => bytes,
+        }
     }
 }

@@ -17,6 +17,7 @@ mod view;
 pub use bytes::AlignedBytes;
 pub(crate) use encode::crc32;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
+pub(crate) use mapped::map_file;
 pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
 pub use scratch::OwnedScratch;
 pub use view::View;
