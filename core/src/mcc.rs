@@ -471,6 +471,9 @@ impl<'a> Mcc<'a> {
         }
         for number in 0..self.num_refinements() {
             let Some(refinement) = self.refinement(number) else { break };
+            if self.site(number).is_some_and(|site| site >= self.num_cells()) {
+                return Err(invalid(SectionKind::RefinementSites, number, Rule::Origin));
+            }
             if refinement.dim + 1 >= self.num_dims() {
                 return Err(invalid(SectionKind::RefinementShapes, number, Rule::Shape));
             }
@@ -483,11 +486,7 @@ impl<'a> Mcc<'a> {
                 return Err(invalid(SectionKind::RefinementErrors, number, Rule::ErrorOrder));
             }
         }
-        let is_past = |&origin: &u32| origin as usize >= self.num_cells();
-        match self.arrays.origins.iter().chain(self.arrays.sites).position(is_past) {
-            Some(place) => Err(invalid(SectionKind::Origins, place, Rule::Origin)),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     fn validate_arcs(&self, arcs: Arcs<'_>, dim: Option<Dim>, limit: usize) -> Result<(), FormatError> {

@@ -39,8 +39,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("threads: {}", rayon::current_num_threads());
     println!(
         "{:<28} {:>9} {:>9} {:>7} {:>8} {:>6} {:>11} {:>11} {:>6} {:>8} {:>7} {:>8} {:>8} {:>6} {:>6}",
-        "data, strategy", "cells", "simpl.", "time s", "a second", "MCC s", "MCC+base", "full", "base", "ref. s", "a second",
-        "box num.", "box s", "deps", "GB"
+        "data, strategy",
+        "cells",
+        "simpl.",
+        "time s",
+        "a second",
+        "MCC s",
+        "MCC+base",
+        "full",
+        "base",
+        "ref. s",
+        "a second",
+        "box num.",
+        "box s",
+        "deps",
+        "GB"
     );
     if arguments.is_empty()
         && let Some(data) = std::env::var_os("SIG_DATA")

@@ -196,7 +196,7 @@ pub enum Rule {
     Shape,
     /// Errors are numbers, and a refinement's is not less than that of one that depends on it.
     ErrorOrder,
-    /// Each cell is a different one of the full complex, or none of the numbers is past its cells.
+    /// There is an origin for each cell, and a site is a vertex of the full complex.
     Origin,
 }
 
@@ -287,7 +287,7 @@ impl fmt::Display for Rule {
             Self::ArcOffset => "lists of arcs are not one after the other, or not as long as their lengths say",
             Self::Shape => "the dimension of a refinement is not one of the complex",
             Self::ErrorOrder => "an error is not a number, or less than that of a refinement that depends on it",
-            Self::Origin => "an origin or site is no cell of the full complex",
+            Self::Origin => "not as many origins as cells, or a site that is no cell of the full complex",
         })
     }
 }

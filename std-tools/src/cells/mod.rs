@@ -176,7 +176,10 @@ impl CellComplex {
     /// before.
     ///
     /// `boundary(number, visit)` calls `visit` with the arcs; it is called twice for each cell.
-    pub(crate) fn lay_out(dims: impl Iterator<Item = Dim> + Clone, boundary: impl Fn(u32, &mut dyn FnMut(Arc))) -> Self {
+    pub(crate) fn lay_out(
+        dims: impl Iterator<Item = Dim> + Clone,
+        boundary: impl Fn(u32, &mut dyn FnMut(Arc)),
+    ) -> Self {
         let mut lengths: Vec<u32> = Vec::new();
         let mut counts = vec![0; MAX_DIM + 1];
         for (number, dim) in (0..).zip(dims.clone()) {

@@ -8,8 +8,8 @@ use serde::Serialize;
 use sig_core::Relations;
 use sig_tools::cells::{CellComplex, read_cells};
 use sig_tools::mcc::{
-    Criterion, Extent, Field, Free, Length, MultiResolution, SimplifyOptions, SimplifyReport, Strategy, Types, simplify,
-    write_mcc,
+    Criterion, Extent, Field, Free, Length, MultiResolution, SimplifyOptions, SimplifyReport, Strategy, Types,
+    simplify, write_mcc,
 };
 use sig_tools::soup::Coordinates;
 use sig_tools::with_view;

@@ -30,7 +30,9 @@ pub enum DrawError {
     #[error("the file has no coordinates of the vertices: nothing can be drawn")]
     NoCoordinates,
     /// The full complex is no simplicial complex.
-    #[error("cell {0} of the full complex is not a simplex of up to three dimensions with different vertices: nothing can be drawn")]
+    #[error(
+        "cell {0} of the full complex is not a simplex of up to three dimensions with different vertices: nothing can be drawn"
+    )]
     NotSimplicial(CellId),
     /// The full complex cannot be made.
     #[error(transparent)]
@@ -95,7 +97,10 @@ impl Drawing {
         let count = self.simplices.len();
         let corners: usize = self.simplices.iter().map(|(corners, _)| corners.len()).sum();
         writeln!(out, r#"<?xml version="1.0"?>"#)?;
-        writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
+        writeln!(
+            out,
+            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
+        )?;
         writeln!(out, "<UnstructuredGrid>")?;
         writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{count}">"#, self.points.len())?;
         writeln!(out, r#"<CellData Scalars="cell">"#)?;

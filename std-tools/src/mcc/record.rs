@@ -154,8 +154,7 @@ impl Recorder {
             }
             self.arcs.push(packed);
         }
-        let lists =
-            [refinement.below_low(), refinement.below_high(), refinement.above_low(), refinement.above_high()];
+        let lists = [refinement.below_low(), refinement.below_high(), refinement.above_low(), refinement.above_high()];
         #[expect(clippy::cast_possible_truncation, reason = "a dimension is at most 31")]
         let dim = refinement.dim as u8;
         self.pairs.push(Killed {

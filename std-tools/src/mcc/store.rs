@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use sig_core::IndexWidth;
 use memmap2::Mmap;
+use sig_core::IndexWidth;
 use sig_core::format::{Column, Encoder, FormatError, Kind, Section, SectionKind};
 use sig_core::mcc::Mcc;
 
@@ -33,7 +33,8 @@ pub fn write_mcc(
     let words = |kind, words| Section::new(kind, Column::U32(words));
     let mut sections = vec![words(SectionKind::Lookup, &complex.lookup)];
     sections.extend(coordinates);
-    sections.extend([words(SectionKind::BaseOffsets, &complex.base_offsets), words(SectionKind::CellArcs, &complex.arcs)]);
+    sections
+        .extend([words(SectionKind::BaseOffsets, &complex.base_offsets), words(SectionKind::CellArcs, &complex.arcs)]);
     if !complex.large.is_empty() {
         let large = words(SectionKind::LargeIncidences, &complex.large);
         sections.push(Section { components: 3, ..large });
