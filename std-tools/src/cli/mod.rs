@@ -13,6 +13,7 @@ mod expansion;
 mod export;
 mod extract;
 mod frozen_output;
+mod homology;
 mod info;
 mod input;
 mod interrupt;
@@ -53,6 +54,7 @@ Examples:
   sig extract bunny.mcc -o b.vtu --count 500  a complex of it, as coarse as one likes
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
+  sig homology bunny.sigc               components, tunnels, voids, torsion
   sig verify bunny.sigc                 whether it is whole and right
   sig export bunny.sigc -o bunny.vtu    for ParaView
 
@@ -70,6 +72,7 @@ enum Command {
     Simplify(simplify::Args),
     Extract(extract::Args),
     Info(info::Args),
+    Homology(homology::Args),
     Query(query::Args),
     Tree(tree::Args),
     Verify(verify::Args),
@@ -90,6 +93,7 @@ impl Command {
             Self::Simplify(args) => args.run(),
             Self::Extract(args) => args.run(),
             Self::Info(args) => args.run(),
+            Self::Homology(args) => args.run(),
             Self::Query(args) => args.run(),
             Self::Tree(args) => args.run(),
             Self::Verify(args) => args.run(),
