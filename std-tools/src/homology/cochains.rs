@@ -9,6 +9,7 @@ use hashbrown::{DefaultHashBuilder, HashTable};
 use super::chains::Level;
 use super::matching::{Matching, NONE};
 use super::ring::{Overflow, Ring, Sparse, add_multiple};
+use crate::build::narrow;
 
 /// The values of all those cochains on each cell of a dimension: vectors over the critical cells, by their position among these.
 pub(super) struct Cochains<E> {
@@ -83,7 +84,7 @@ impl Known {
         if let Some(&number) = self.table.find(of, |&number| vectors[number as usize] == vector) {
             return number;
         }
-        let number = vectors.len() as u32;
+        let number = narrow(vectors.len());
         vectors.push(vector);
         self.table.insert_unique(of, number, |&number| hash(&vectors[number as usize]));
         number

@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 
 use super::chains::Level;
+use crate::build::narrow;
 
 /// What happens to a cell: it goes together with a coface, or, without one, stays as a critical cell.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +32,7 @@ pub(super) struct Matching {
 pub(super) fn pair(gone: &[bool], above: &Level, gone_above: &mut [bool]) -> Matching {
     let cofaces = Cofaces::new(gone, above);
     let mut left: Vec<u32> = (0..above.num_cells())
-        .map(|coface| above.faces(coface).iter().filter(|&&face| !gone[face as usize]).count() as u32)
+        .map(|coface| narrow(above.faces(coface).iter().filter(|&&face| !gone[face as usize]).count()))
         .collect();
     let mut queue: VecDeque<u32> = (0_u32..)
         .zip(&left)
@@ -50,8 +51,8 @@ pub(super) fn pair(gone: &[bool], above: &Level, gone_above: &mut [bool]) -> Mat
             None => match is_left[first..].iter().position(|&is_left| is_left) {
                 Some(next) => {
                     first += next;
-                    matching.critical.push(first as u32);
-                    Step { cell: first as u32, coface: NONE }
+                    matching.critical.push(narrow(first));
+                    Step { cell: narrow(first), coface: NONE }
                 }
                 None => break,
             },
@@ -103,7 +104,7 @@ impl Cofaces {
             for &face in above.faces(coface) {
                 if !gone[face as usize] {
                     starts[face as usize] -= 1;
-                    cofaces[starts[face as usize]] = coface as u32;
+                    cofaces[starts[face as usize]] = narrow(coface);
                 }
             }
         }

@@ -95,6 +95,14 @@ pub enum HomologyError {
     /// The marks of the subcomplex are not one for each cell.
     #[error("the marks of the subcomplex are not one for each cell")]
     MalformedSubcomplex,
+    /// There are more cells of a dimension than 32-bit numbers.
+    #[error("{count} cells of dimension {dim} are too many")]
+    TooManyCells {
+        /// The dimension.
+        dim: Dim,
+        /// How many there are.
+        count: usize,
+    },
     /// The boundary of the boundary of some cell is not zero.
     #[error("in dimension {dim} there is a cell the boundary of whose boundary is not zero")]
     BoundaryOfBoundary {
@@ -155,6 +163,9 @@ impl From<HomologyError> for Failure {
 
 fn compute<R: Ring>(ring: &R, chains: &impl Chains, relative_to: Option<&[Vec<bool>]>) -> Result<Homology, Failure> {
     let counts = chains.counts();
+    if let Some((dim, &count)) = counts.iter().enumerate().find(|(_, count)| u32::try_from(**count + 1).is_err()) {
+        return Err(HomologyError::TooManyCells { dim, count }.into());
+    }
     let mut gone = match relative_to {
         Some(marks) => marks.to_vec(),
         None => counts.iter().map(|&count| vec![false; count]).collect(),
@@ -197,8 +208,11 @@ struct Below<E> {
     cochains: Cochains<E>,
     level: Level,
     /// The boundaries of the critical cells of the dimension below.
-    columns: Vec<Sparse<E>>,
+    columns: Columns<E>,
 }
+
+/// The columns of a sparse matrix.
+type Columns<E> = Vec<Sparse<E>>;
 
 /// The boundaries of the critical cells of a dimension, if they are wanted, and their normal form. Checks that they have no
 /// boundary themselves.
@@ -208,7 +222,7 @@ fn boundaries<R: Ring>(
     below: Option<Below<R::Element>>,
     matching: &Matching,
     is_wanted: bool,
-) -> Result<(SmithForm, Vec<Sparse<R::Element>>), Failure> {
+) -> Result<(SmithForm, Columns<R::Element>), Failure> {
     let mut columns = vec![Vec::new(); if is_wanted { matching.critical.len() } else { 0 }];
     let mut elimination = Elimination::new(ring);
     if let Some(Below { cochains, level, columns: lower }) = below {
@@ -268,7 +282,7 @@ fn alternating(counts: &[usize]) -> i64 {
 /// Whether a number is prime. Cost: trial division.
 #[must_use]
 pub fn is_prime(number: u32) -> bool {
-    let divides = |divisor: u32| number % divisor == 0;
+    let divides = |divisor: u32| number.is_multiple_of(divisor);
     number >= 2
         && (2_u32..).take_while(|divisor| divisor.saturating_mul(*divisor) <= number).all(|divisor| !divides(divisor))
 }
