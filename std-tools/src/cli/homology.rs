@@ -12,7 +12,7 @@ use sig_core::{Relations, SimplexId, VertexId};
 use sig_tools::build::{BuildOptions, build};
 use sig_tools::cells::{CellComplex, read_cells};
 use sig_tools::homology::{BigInt, Cells, Coefficients, Homology, HomologyOptions, Simplices, homology, is_prime};
-use sig_tools::io::{ReadOptions, read};
+use sig_tools::io::{Format, ReadOptions, read};
 use sig_tools::mcc::Front;
 use sig_tools::names::{simplex_labels, vertex_label};
 use sig_tools::store::{EncodeOptions, Encoding};
@@ -48,6 +48,10 @@ pub(super) struct Args {
     /// Relative to a subcomplex: a file of simplices that must be in the complex, faces of theirs being meant, too
     #[arg(long, value_name = "SUB")]
     relative: Option<PathBuf>,
+
+    /// The format of meshes and lists of simplices; by default it is found by content, then by name
+    #[arg(short, long, value_parser = super::named(Format::ALL, Format::name, Format::description))]
+    format: Option<Format>,
 
     #[command(flatten)]
     threads: Threads,
@@ -123,7 +127,7 @@ impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         self.threads.start()?;
         let options = HomologyOptions { over: self.over.0, ..HomologyOptions::default() };
-        let found = match open(&self.file)? {
+        let found = match open(&self.file, self.format)? {
             Source::Cells(_) if self.relative.is_some() => {
                 let message = "--relative wants a simplicial complex, and this is a cell complex".to_owned();
                 return Err(UsageError(message).into());
@@ -132,7 +136,7 @@ impl Args {
             Source::Simplicial(input) => with_view!(input.view(), complex => {
                 let name = tree_input::displayed(&self.file);
                 complex.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
-                let marks = self.relative.as_deref().map(|path| marked(&complex, path)).transpose()?;
+                let marks = self.relative.as_deref().map(|path| marked(&complex, path, self.format)).transpose()?;
                 compute(|| homology(&Simplices(&complex), &HomologyOptions { relative_to: marks.as_deref(), ..options }))?
             }),
         };
@@ -193,7 +197,7 @@ fn group(over: Ring, betti: usize, torsion: &[BigInt]) -> String {
 }
 
 /// Opens a complex in any of its forms.
-fn open(path: &Path) -> anyhow::Result<Source> {
+fn open(path: &Path, format: Option<Format>) -> anyhow::Result<Source> {
     if mcc_input::is_one(path) {
         let file = mcc_input::open(path)?;
         // Every front has the same homology, and the base complex is the smallest.
@@ -205,11 +209,11 @@ fn open(path: &Path) -> anyhow::Result<Source> {
     };
     let name = tree_input::displayed(path);
     let mut reader = BufReader::with_capacity(1 << 16, reader);
-    if is_cells(reader.fill_buf().with_context(|| name.clone())?, &name) {
+    if format.is_none() && is_cells(reader.fill_buf().with_context(|| name.clone())?, &name) {
         return Ok(Source::Cells(progress::during("reading", || read_cells(reader, &name))?));
     }
     let (soup, _) = progress::reading_of(length, &name, |progress| {
-        read(reader, &name, &ReadOptions { progress, ..ReadOptions::default() })
+        read(reader, &name, &ReadOptions { format, progress, ..ReadOptions::default() })
     })?;
     let built = progress::during("building", || build(soup, &BuildOptions::default()))?;
     let bytes = Encoding::new(&built, &EncodeOptions { checksums: false, ..EncodeOptions::default() })?.to_bytes()?;
@@ -224,9 +228,9 @@ fn is_cells(head: &[u8], name: &str) -> bool {
 }
 
 /// For each dimension and simplex of the complex whether it belongs to the one at `path`, by the labels of its vertices.
-fn marked<C: Relations>(complex: &C, path: &Path) -> anyhow::Result<Vec<Vec<bool>>> {
+fn marked<C: Relations>(complex: &C, path: &Path, format: Option<Format>) -> anyhow::Result<Vec<Vec<bool>>> {
     let name = tree_input::displayed(path);
-    let Source::Simplicial(input) = open(path)? else {
+    let Source::Simplicial(input) = open(path, format)? else {
         return Err(UsageError(format!("{name}: --relative wants simplices, and these are cells")).into());
     };
     let dims = complex.dim().map_or(0, |dim| dim + 1);
