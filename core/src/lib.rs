@@ -37,6 +37,7 @@
 //! | code for either | [`Relations`] |
 //! | memory for queries | [`Scratch`], [`StaticScratch`] |
 //! | cells and their incidences | [`mod@cell`] |
+//! | multi-resolution cell complexes: closed sets, streams of refinements | [`mcc::Mcc`] |
 //! | the bytes: header, sections, checksums, encoding | [`mod@format`] |
 //! | embedding a file in a program | [`include_aligned!`] |
 //! | the paper's storage formulas | [`storage`] |
@@ -54,6 +55,7 @@ pub mod complex;
 mod embed;
 pub mod format;
 pub mod id;
+pub mod mcc;
 pub mod relations;
 pub mod scratch;
 mod slices;

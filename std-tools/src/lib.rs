@@ -28,6 +28,8 @@
 //! | contract edges of the whole arrays | [`mod@contract`] | [`contract::contract`] |
 //! | closed manifolds by darts and permutations | [`combinatorial_map`] | [`combinatorial_map::CombinatorialMap`] |
 //! | cell complexes that change | [`mod@cells`] | [`cells::CellComplex`] |
+//! | multi-resolution cell complexes | [`mod@mcc`] | [`mcc::simplify`](mcc::simplify()), [`mcc::Front`] |
+//! | Betti numbers and torsion | [`mod@homology`] | [`homology::homology`](homology::homology()) |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
@@ -65,8 +67,10 @@ pub mod flag;
 pub mod frozen;
 pub mod generate;
 pub mod graph;
+pub mod homology;
 pub mod incidence_graph;
 pub mod io;
+pub mod mcc;
 pub mod names;
 pub mod points;
 pub mod proximity;

@@ -117,7 +117,7 @@ impl<'a> Sections<'_, 'a> {
     pub(crate) fn check_columns(&self, levels: &Levels) -> Result<(), FormatError> {
         let is_tree = self.container.header().kind == Kind::Tree;
         for section in self.container.sections() {
-            if is_tree && section.kind.is_of_sig_only() {
+            if is_tree && section.kind.is_of_sig_only() || section.kind.is_of_cells() {
                 return Err(self.wrong(&section, TableError::UnknownKind(section.kind.code())));
             }
             self.check_column(&section, levels)?;

@@ -187,6 +187,17 @@ pub enum Rule {
     Labels,
     /// Text is UTF-8.
     Text,
+    /// Arcs lead by increasing number to cells of the dimension beside that were made before, with a multiplicity that is not
+    /// zero and a sign that fits it.
+    Arc,
+    /// The offsets of lists of arcs do not decrease, and the lists of a refinement are as long as its arcs are many.
+    ArcOffset,
+    /// The dimension of a refinement is one of the complex.
+    Shape,
+    /// Errors are numbers, and a refinement's is not less than that of one that depends on it.
+    ErrorOrder,
+    /// There is an origin for each cell, and a site is a vertex of the full complex.
+    Origin,
 }
 
 impl fmt::Display for FormatError {
@@ -272,6 +283,11 @@ impl fmt::Display for Rule {
             Self::Filtration => "a filtration value is NaN, −0, or less than that of a face",
             Self::Labels => "labels are not UTF-8 between increasing offsets",
             Self::Text => "text is not UTF-8",
+            Self::Arc => "an arc leads to a cell of the wrong dimension or order, or has no possible incidence",
+            Self::ArcOffset => "lists of arcs are not one after the other, or not as long as their lengths say",
+            Self::Shape => "the dimension of a refinement is not one of the complex",
+            Self::ErrorOrder => "an error is not a number, or less than that of a refinement that depends on it",
+            Self::Origin => "not as many origins as cells, or a site that is no cell of the full complex",
         })
     }
 }

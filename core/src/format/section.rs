@@ -48,11 +48,29 @@ pub enum SectionKind {
     LowerNeighbours = 18,
     /// Two indices for each simplex of dimension d − 1: its d-simplices, where none has more than two (sig-2004, 7.4).
     Pairs = 19,
+    /// Where the boundary of each base cell starts in the arcs, and the end of the last one.
+    BaseOffsets = 32,
+    /// Arcs of a cell complex: a neighbour and how it is incident, packed.
+    CellArcs = 33,
+    /// Incidences that no packed arc holds: the place of the arc, the multiplicity and the sign.
+    LargeIncidences = 34,
+    /// The cell of the full complex that each cell is.
+    Origins = 35,
+    /// Where the arcs of each refinement start, and the end of the last one.
+    RefinementOffsets = 36,
+    /// The dimension of the lower cell of each refinement, and the sign of the pair.
+    RefinementShapes = 37,
+    /// The lengths of the first three lists of each refinement.
+    RefinementSplits = 38,
+    /// The error of the complex without the refinement.
+    RefinementErrors = 39,
+    /// The vertex of the full complex where each refinement is.
+    RefinementSites = 40,
 }
 
 impl SectionKind {
     /// Every kind, in the order of their numbers.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 28] = [
         Self::Lookup,
         Self::Boundary,
         Self::Pointers,
@@ -72,6 +90,15 @@ impl SectionKind {
         Self::LowerOffsets,
         Self::LowerNeighbours,
         Self::Pairs,
+        Self::BaseOffsets,
+        Self::CellArcs,
+        Self::LargeIncidences,
+        Self::Origins,
+        Self::RefinementOffsets,
+        Self::RefinementShapes,
+        Self::RefinementSplits,
+        Self::RefinementErrors,
+        Self::RefinementSites,
     ];
 
     /// The number of the kind in the section table.
@@ -87,6 +114,11 @@ impl SectionKind {
     /// Whether files of kind SIG have the section and trees do not.
     pub(crate) const fn is_of_sig_only(self) -> bool {
         matches!(self, Self::Boundary | Self::Pointers | Self::Lists | Self::Flags | Self::Parity | Self::Pairs)
+    }
+
+    /// Whether no simplicial complex has such a section.
+    pub(crate) fn is_of_cells(self) -> bool {
+        self >= Self::BaseOffsets
     }
 
     /// The name of the kind, as `FORMAT.md` has it.
@@ -112,6 +144,15 @@ impl SectionKind {
             Self::LowerOffsets => "lower-offsets",
             Self::LowerNeighbours => "lower-neighbours",
             Self::Pairs => "pairs",
+            Self::BaseOffsets => "base-offsets",
+            Self::CellArcs => "cell-arcs",
+            Self::LargeIncidences => "large-incidences",
+            Self::Origins => "origins",
+            Self::RefinementOffsets => "refinement-offsets",
+            Self::RefinementShapes => "refinement-shapes",
+            Self::RefinementSplits => "refinement-splits",
+            Self::RefinementErrors => "refinement-errors",
+            Self::RefinementSites => "refinement-sites",
         }
     }
 }

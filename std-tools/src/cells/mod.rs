@@ -138,6 +138,13 @@ impl CellComplex {
         self.cells.capacity() * size_of::<Header>() + self.arena.bytes().0 + elsewhere
     }
 
+    /// Makes room for numbers of cells below a bound.
+    pub(crate) fn reserve_ids(&mut self, num_ids: usize) {
+        if self.cells.len() < num_ids {
+            self.cells.resize(num_ids, Header::VACANT);
+        }
+    }
+
     #[inline]
     fn header(&self, cell: CellId) -> Option<Header> {
         self.cells.get(cell.index()).copied().filter(|header| !header.is_vacant())
@@ -169,7 +176,10 @@ impl CellComplex {
     /// before.
     ///
     /// `boundary(number, visit)` calls `visit` with the arcs; it is called twice for each cell.
-    fn lay_out(dims: impl Iterator<Item = Dim> + Clone, boundary: impl Fn(u32, &mut dyn FnMut(Arc))) -> Self {
+    pub(crate) fn lay_out(
+        dims: impl Iterator<Item = Dim> + Clone,
+        boundary: impl Fn(u32, &mut dyn FnMut(Arc)),
+    ) -> Self {
         let mut lengths: Vec<u32> = Vec::new();
         let mut counts = vec![0; MAX_DIM + 1];
         for (number, dim) in (0..).zip(dims.clone()) {

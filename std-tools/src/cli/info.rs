@@ -14,13 +14,14 @@ use sig_tools::store::Access;
 
 use super::input::Input;
 use super::output::{self, grouped, table};
-use super::progress;
+use super::{extract, mcc_input, progress};
 
 /// Show what is in a file: simplices, clusters, components, storage
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   sig info bunny.sigc
+  sig info bunny.mcc                   base complex, refinements, dependencies
   sig info rips.sigc --tops            the top simplices of a tree, too
   sig info bunny.sigc --json | jq .euler_characteristic")]
 pub(super) struct Args {
@@ -38,6 +39,9 @@ pub(super) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
+        if mcc_input::is_one(&self.file) {
+            return extract::info(&self.file, self.json);
+        }
         let input = Input::open(&self.file, Access::Sequential)?;
         let summary = match input.view() {
             View::Complex(any) => with_complex!(any, complex => Summary::of_complex(&complex)),

@@ -12,14 +12,19 @@ mod contract;
 mod expand;
 mod expansion;
 mod export;
+mod extract;
 mod frozen_output;
+mod homology;
 mod info;
 mod input;
+mod interrupt;
 mod man;
+mod mcc_input;
 mod output;
 mod progress;
 mod query;
 mod rips;
+mod simplify;
 mod tree;
 mod tree_input;
 mod verify;
@@ -46,9 +51,12 @@ Examples:
   sig rips cloud.npy -r 0.3 -o c.sigc   the Rips complex of points
   sig witness c.npy --maxmin 300 -o w.sigc  the witness complex of 300 landmarks among them
   sig collapse c.sigc -o small.sigc     fewer simplices, the same homotopy type
+  sig simplify bunny.sigc -o bunny.mcc  a multi-resolution complex of the same homology
+  sig extract bunny.mcc -o b.vtu --count 500  a complex of it, as coarse as one likes
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
   sig compare bunny.sigc                beside other structures: space, building, relations
+  sig homology bunny.sigc               components, tunnels, voids, torsion
   sig verify bunny.sigc                 whether it is whole and right
   sig export bunny.sigc -o bunny.vtu    for ParaView
 
@@ -63,7 +71,10 @@ enum Command {
     Expand(expand::Args),
     Collapse(collapse::Args),
     Contract(contract::Args),
+    Simplify(simplify::Args),
+    Extract(extract::Args),
     Info(info::Args),
+    Homology(homology::Args),
     Query(query::Args),
     Tree(tree::Args),
     Compare(compare::Args),
@@ -82,7 +93,10 @@ impl Command {
             Self::Expand(args) => args.run(),
             Self::Collapse(args) => args.run(),
             Self::Contract(args) => args.run(),
+            Self::Simplify(args) => args.run(),
+            Self::Extract(args) => args.run(),
             Self::Info(args) => args.run(),
+            Self::Homology(args) => args.run(),
             Self::Query(args) => args.run(),
             Self::Tree(args) => args.run(),
             Self::Compare(args) => args.run(),
@@ -160,8 +174,10 @@ fn handle_signals() -> io::Result<()> {
     let handled = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
     let mut signals = signal_hook::iterator::Signals::new(handled)?;
     std::thread::spawn(move || {
-        if let Some(signal) = signals.forever().next() {
-            atomic::abort(128 + signal);
+        for signal in signals.forever() {
+            if signal != SIGINT || !interrupt::take() {
+                atomic::abort(128 + signal);
+            }
         }
     });
     Ok(())

@@ -12,7 +12,7 @@ mod ply;
 mod simplex_list;
 #[cfg(test)]
 mod tests;
-mod vtu;
+pub(crate) mod vtu;
 
 use std::fmt;
 use std::io::{self, Write};

@@ -11,7 +11,7 @@ use sig_core::Relations;
 use super::mesh::Mesh;
 
 /// VTK's cell types of a vertex, a line, a triangle and a tetrahedron.
-const CELL_TYPES: [u8; 4] = [1, 3, 5, 10];
+pub(crate) const CELL_TYPES: [u8; 4] = [1, 3, 5, 10];
 
 pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     let counts = mesh.num_cells();
@@ -76,7 +76,7 @@ fn points<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<(
 }
 
 /// An array of so many bytes, which are what `fill` writes.
-fn array(
+pub(crate) fn array(
     out: &mut dyn Write,
     attributes: &str,
     bytes: usize,

@@ -461,7 +461,7 @@ fn pairs<I: Index>(arrays: &SigArrays<I>) -> Result<Option<Vec<I>>, EncodeError>
 }
 
 /// The CRC-32 of a file's checksums, at the speed of the hardware.
-pub(super) fn crc32(before: u32, bytes: &[u8]) -> u32 {
+pub(crate) fn crc32(before: u32, bytes: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new_with_initial(before);
     hasher.update(bytes);
     hasher.finalize()

@@ -46,7 +46,7 @@ pub enum OpenErrorKind {
 }
 
 impl OpenError {
-    fn new(path: &Path, kind: OpenErrorKind) -> Self {
+    pub(crate) fn new(path: &Path, kind: OpenErrorKind) -> Self {
         Self { path: path.to_owned(), kind }
     }
 
@@ -83,6 +83,22 @@ pub enum Access {
     WillNeed,
 }
 
+/// Maps a file that is not empty.
+pub(crate) fn map_file(path: &Path) -> Result<Mmap, OpenError> {
+    let file = File::open(path).map_err(OpenError::io(path))?;
+    // Mapping nothing fails on some systems, with a message that does not help.
+    if file.metadata().map_err(OpenError::io(path))?.len() == 0 {
+        return Err(OpenError::new(path, OpenErrorKind::Empty));
+    }
+    // SAFETY: the map is private to this process and read-only. What remains is that another process may write into
+    // the file or truncate it, against which no program can defend itself; the documentation of `Mapped` says what
+    // happens then and what to use instead. Every view bounds what it reads by the length of the map and accepts
+    // any bytes, so a changed file gives wrong answers, not reads outside the map.
+    #[expect(unsafe_code)]
+    let map = unsafe { Mmap::map(&file) }.map_err(OpenError::io(path))?;
+    Ok(map)
+}
+
 /// A file mapped into memory: opened in the time of a few reads whatever its length, read where it lies, shared by all
 /// processes that map it.
 ///
@@ -108,17 +124,7 @@ impl Mapped {
     /// [`ForeignByteOrder`](FormatError::ForeignByteOrder): use [`Loaded`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
-        let file = File::open(path).map_err(OpenError::io(path))?;
-        // Mapping nothing fails on some systems, with a message that does not help.
-        if file.metadata().map_err(OpenError::io(path))?.len() == 0 {
-            return Err(OpenError::new(path, OpenErrorKind::Empty));
-        }
-        // SAFETY: the map is private to this process and read-only. What remains is that another process may write into
-        // the file or truncate it, against which no program can defend itself; the documentation of `Mapped` says what
-        // happens then and what to use instead. Every view bounds what it reads by the length of the map and accepts
-        // any bytes, so a changed file gives wrong answers, not reads outside the map.
-        #[expect(unsafe_code)]
-        let map = unsafe { Mmap::map(&file) }.map_err(OpenError::io(path))?;
+        let map = map_file(path)?;
         check(path, &map)?;
         Ok(Self { map })
     }

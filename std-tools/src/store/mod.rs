@@ -15,7 +15,9 @@ pub mod verify;
 mod view;
 
 pub use bytes::AlignedBytes;
+pub(crate) use encode::crc32;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
+pub(crate) use mapped::map_file;
 pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
 pub use scratch::OwnedScratch;
 pub use view::View;

@@ -4,6 +4,7 @@
 #![allow(clippy::cast_possible_truncation)]
 
 mod betti;
+mod mcc;
 mod model;
 mod operators;
 #[allow(dead_code, reason = "shared with the tests of the builder")]
