@@ -62,7 +62,8 @@ pub struct SimplifyReport {
     pub simplifications: usize,
     /// Entries of the queue that were put back because they cost more.
     pub put_back: usize,
-    /// Rounds: of a batch each round, of steps each search for what is feasible, which is at least two if none is left.
+    /// Rounds: of a batch each round, of steps each search for what is feasible, of which the last finds nothing unless a
+    /// target is met.
     pub rounds: usize,
     /// Seconds until the last one, without making the multi-resolution complex of them.
     pub simplify_seconds: f64,
