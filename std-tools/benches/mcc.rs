@@ -163,12 +163,12 @@ fn in_box(coordinates: &Coordinates) -> impl Fn(usize) -> bool + use<> {
             let mut along: Vec<f64> = values.iter().skip(axis).step_by(dim).copied().collect();
             along.sort_by(f64::total_cmp);
             // The middle 58 % of each axis: a fifth of what is spread evenly.
-            let at = |part: f64| along[(part * (along.len() - 1) as f64) as usize];
-            [at(0.21), at(0.79)]
+            let at = |hundredths: usize| along[(along.len() - 1) * hundredths / 100];
+            [at(21), at(79)]
         })
         .collect();
     move |vertex| {
         let row = &values[vertex * dim..][..dim];
-        bounds.iter().zip(row).all(|(&[low, high], value)| (low..=high).contains(&value))
+        bounds.iter().zip(row).all(|(&[low, high], value)| (low..=high).contains(value))
     }
 }

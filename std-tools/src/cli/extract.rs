@@ -37,7 +37,7 @@ pub(super) struct Args {
     format: Option<FormatName>,
 
     /// The refinements without which the error would be above E
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
     error: Option<f32>,
 
     /// The first N refinements
@@ -45,8 +45,8 @@ pub(super) struct Args {
     count: Option<usize>,
 
     /// The refinements in a box, given by two corners
-    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, value_delimiter = ',', num_args = 6)]
-    corners: Option<Vec<f64>>,
+    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, value_parser = corners)]
+    corners: Option<Corners>,
 
     /// Also write a picture: SVG
     #[arg(long, value_name = "FILE")]
@@ -67,6 +67,24 @@ pub(super) struct Args {
     /// Print a JSON object on what was done
     #[arg(long)]
     json: bool,
+}
+
+/// The least and the largest coordinates of a box.
+#[derive(Clone, Copy)]
+struct Corners {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+/// Six numbers: two corners, in any order along each axis.
+fn corners(text: &str) -> Result<Corners, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse::<f64>()).collect();
+    match numbers.as_deref() {
+        Ok(&[a, b, c, d, e, f]) if !numbers.iter().flatten().any(|number| number.is_nan()) => {
+            Ok(Corners { low: [a.min(d), b.min(e), c.min(f)], high: [a.max(d), b.max(e), c.max(f)] })
+        }
+        _ => Err("six numbers with commas between are wanted: x,y,z of one corner, x,y,z of the other".to_owned()),
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -135,7 +153,7 @@ impl Args {
 
     /// Which refinements are asked for.
     fn wanted<'m>(&'m self, mcc: &'m Mcc<'_>) -> anyhow::Result<impl Fn(usize) -> bool + use<'m>> {
-        let is_inside = match &self.corners {
+        let is_inside = match self.corners {
             Some(corners) => Some(in_box(mcc, corners).with_context(|| self.input.display().to_string())?),
             None => None,
         };
@@ -156,7 +174,9 @@ impl Args {
             (FormatName::Cells, _) => write_cells(front.complex(), out),
             _ => write_mcc(&front.to_complex(), coordinates(front.mcc()).as_ref(), out),
         })?;
-        output::log(format_args!("wrote  {}", path.display()));
+        if !output::is_stdout(path) {
+            output::log(format_args!("wrote  {}", path.display()));
+        }
         let axis = match self.view {
             AxisName::X => ViewAxis::X,
             AxisName::Y => ViewAxis::Y,
@@ -173,11 +193,11 @@ impl Args {
 }
 
 /// Whether the site of a refinement is in a box.
-fn in_box<'m>(mcc: &'m Mcc<'_>, corners: &'m [f64]) -> anyhow::Result<impl Fn(usize) -> bool + use<'m>> {
+fn in_box<'m>(mcc: &'m Mcc<'_>, corners: Corners) -> anyhow::Result<impl Fn(usize) -> bool + use<'m>> {
     let section = mcc.coordinates().context("the file has no coordinates: --box cannot be asked of it")?;
     let components = section.components as usize;
     let (column, axes) = (section.column, components.min(3));
-    let (low, high) = corners.split_at(3);
+    let Corners { low, high } = corners;
     Ok(move |refinement| {
         let inside = |site: usize, axis: usize| {
             column.number_at(site * components + axis).is_some_and(|value| (low[axis]..=high[axis]).contains(&value))

@@ -142,7 +142,9 @@ impl Args {
         output::to_path(&self.target.output, self.target.existing(), |out| {
             write_mcc(&recorded, coordinates.as_ref(), out)
         })?;
-        output::log(format_args!("wrote  {}", self.target.output.display()));
+        if !output::is_stdout(&self.target.output) {
+            output::log(format_args!("wrote  {}", self.target.output.display()));
+        }
         if self.json {
             output::json(&Report {
                 input_cells,

@@ -41,7 +41,9 @@ pub struct BadRefinement {
 }
 
 impl<'a> Front<'a> {
-    /// The base complex. Cost: its cells, and a word for each cell of the full complex.
+    /// The base complex. Cost: its cells, and 12 bytes for each cell of the full complex.
+    ///
+    /// A file of unknown origin should be [validated](Mcc::validate) first: on what that refuses, a front may panic.
     #[must_use]
     pub fn new(mcc: Mcc<'a>) -> Self {
         let base = narrow(mcc.num_base_cells());

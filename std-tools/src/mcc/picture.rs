@@ -12,12 +12,15 @@ use crate::build::narrow;
 use crate::cells::CellComplex;
 use crate::export::vtu;
 
+/// A cell of a front by its number in the full complex, and its dimension.
+type FrontCell = (u32, Dim);
+
 /// The top simplices of the full complex of a front, with the cells of the front that they are in.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     points: Vec<[f64; 3]>,
-    /// The corners of each simplex, by dimension, and the cell of the front, by its number in the full complex, with its dimension.
-    simplices: Vec<(Vec<u32>, Option<(u32, Dim)>)>,
+    /// The corners of each simplex, and the cell of the front that it is in.
+    simplices: Vec<(Vec<u32>, Option<FrontCell>)>,
     /// The triangles that are seen: those of no solid, and those of one. With the cell of the front.
     triangles: Vec<([u32; 3], Option<u32>)>,
 }
@@ -73,7 +76,7 @@ impl Drawing {
             if above.is_some() && !is_seen {
                 continue;
             }
-            let corners = corners(complex, cell, dim, &origin).ok_or(DrawError::NotSimplicial(cell))?;
+            let corners = corners(complex, cell, dim, origin).ok_or(DrawError::NotSimplicial(cell))?;
             if corners.iter().any(|&corner| corner as usize >= drawing.points.len()) {
                 return Err(DrawError::NoCoordinates);
             }
@@ -104,7 +107,7 @@ impl Drawing {
         writeln!(out, "<UnstructuredGrid>")?;
         writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{count}">"#, self.points.len())?;
         writeln!(out, r#"<CellData Scalars="cell">"#)?;
-        let of = |of: Option<(u32, Dim)>| of.map_or((-1, -1), |(cell, dim)| (i64::from(cell), dim as i64));
+        let of = |of: Option<FrontCell>| of.map_or((-1, -1), |(cell, dim)| (i64::from(cell), dim as i64));
         vtu::array(out, r#"type="Int64" Name="cell""#, count * 8, |data| {
             self.simplices.iter().try_for_each(|&(_, cell)| data.write_all(&of(cell).0.to_le_bytes()))
         })?;

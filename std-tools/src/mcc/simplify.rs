@@ -15,7 +15,6 @@ use sig_core::CellId;
 
 use super::criterion::{Criterion, Pair};
 use super::record::{MultiResolution, Recorder};
-use crate::build::narrow;
 use crate::cells::{CellComplex, Instance, Refinement};
 
 /// In which order pairs are killed.
@@ -62,7 +61,8 @@ pub struct SimplifyReport {
     pub simplifications: usize,
     /// Entries of the queue that were put back because they cost more.
     pub put_back: usize,
-    /// Rounds: of a batch each round, of steps each search for what is feasible, which is at least two if none is left.
+    /// Rounds: of a batch each round, of steps each search for what is feasible, of which the last finds nothing unless a
+    /// target is met.
     pub rounds: usize,
     /// Seconds until the last one, without making the multi-resolution complex of them.
     pub simplify_seconds: f64,
@@ -100,25 +100,28 @@ fn run<C: Criterion + ?Sized>(
     (work.recorder, work.report)
 }
 
-/// An entry of the queue: the cost above, the pivot and the instance below. Costs are not negative, so they compare as their
-/// bits do.
+/// An entry of the queue: the bits of the cost, which is not negative, so that they compare as it does; then the pivot, and the
+/// instance in the lowest bit.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry(u64);
+struct Entry {
+    cost: u32,
+    pivot: u32,
+}
 
 impl Entry {
     fn new(cost: f32, pivot: CellId, instance: Instance) -> Self {
-        let pivot = u64::from(pivot.number()) << 1 | u64::from(instance == Instance::Second);
         // −0 is 0.
-        Self(u64::from((cost + 0.0).to_bits()) << 32 | pivot)
+        let cost = (cost + 0.0).to_bits();
+        Self { cost, pivot: pivot.number() << 1 | u32::from(instance == Instance::Second) }
     }
 
     fn cost(self) -> f32 {
-        f32::from_bits(narrow((self.0 >> 32) as usize))
+        f32::from_bits(self.cost)
     }
 
     fn pivot(self) -> (CellId, Instance) {
-        let number = narrow((self.0 & u64::from(u32::MAX)) as usize);
-        (CellId::new(number >> 1), if number & 1 == 1 { Instance::Second } else { Instance::First })
+        let instance = if self.pivot & 1 == 1 { Instance::Second } else { Instance::First };
+        (CellId::new(self.pivot >> 1), instance)
     }
 }
 
@@ -216,7 +219,7 @@ impl<C: Criterion + ?Sized> Work<'_, C> {
 
     fn is_done(&self) -> bool {
         let done = self.recorder.len();
-        if done % 4096 == 0 {
+        if done.is_multiple_of(4096) {
             if let Some(progress) = self.options.progress {
                 progress(done as u64);
             }
