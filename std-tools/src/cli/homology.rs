@@ -8,10 +8,13 @@ use std::str::FromStr;
 use anyhow::Context;
 use hashbrown::HashMap;
 use serde::{Serialize, Serializer};
-use sig_core::{Relations, SimplexId, VertexId};
+use sig_core::{Dim, Relations, SimplexId, VertexId};
 use sig_tools::build::{BuildOptions, build};
 use sig_tools::cells::{CellComplex, read_cells};
-use sig_tools::homology::{BigInt, Cells, Coefficients, Homology, HomologyOptions, Simplices, homology, is_prime};
+use sig_tools::homology::{
+    BigInt, Cells, Chain, Chains, Coefficients, Generator, Homology, HomologyError, HomologyOptions, Simplices,
+    generators, homology, is_prime,
+};
 use sig_tools::io::{Format, ReadOptions, read};
 use sig_tools::mcc::Front;
 use sig_tools::names::{simplex_labels, vertex_label};
@@ -35,6 +38,7 @@ Examples:
   sig homology rips.sigc --over Z2 --json               {\"betti\":[1,0,1],\"torsion\":[[],[],[]],…}
   sig homology klein.off --over Q                       of a mesh, without a file
   sig homology ball.sigc --relative sphere.simplices    relative to a subcomplex, by its vertex labels
+  sig homology torus.off --generators                   with cycles, by the labels of the vertices
   sig homology lens.cells                               of a cell complex in text
   sig homology bunny.mcc                                of a multi-resolution complex: that of every front")]
 pub(super) struct Args {
@@ -48,6 +52,11 @@ pub(super) struct Args {
     /// Relative to a subcomplex: a file of simplices that must be in the complex, faces of theirs being meant, too
     #[arg(long, value_name = "SUB")]
     relative: Option<PathBuf>,
+
+    /// Tell cycles that generate the groups, as sums of simplices with their orientations, or of cells by their numbers in their
+    /// dimension; of torsion also a chain, the boundary of which is the cycle times its order
+    #[arg(long)]
+    generators: bool,
 
     /// The format of meshes and lists of simplices; by default it is found by content, then by name
     #[arg(short, long, value_parser = super::named(Format::ALL, Format::name, Format::description))]
@@ -103,15 +112,56 @@ struct Report {
     euler_characteristic: i64,
     cells: Vec<usize>,
     critical: Vec<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    generators: Option<Vec<Vec<Named>>>,
 }
 
-/// A number of JSON where it is below 2⁵³, so that every reader takes it as it is, else a string of digits.
+/// A generator in names.
+#[derive(Serialize)]
+struct Named {
+    /// Of a class of finite order.
+    order: Option<Factor>,
+    cycle: Vec<Term>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bounds: Option<Vec<Term>>,
+}
+
+/// A coefficient, and what it stands before: the labels of a simplex, or the number of a cell.
+#[derive(Serialize)]
+struct Term(Factor, Vec<String>);
+
+impl Named {
+    fn new(dim: Dim, generator: Generator, name: &impl Fn(Dim, u32) -> Vec<String>) -> Self {
+        let terms = |dim: Dim, chain: Chain| {
+            let term = |(cell, coefficient)| Term(Factor(coefficient), name(dim, cell));
+            chain.into_iter().map(term).collect()
+        };
+        Self {
+            order: generator.order.map(Factor),
+            cycle: terms(dim, generator.cycle),
+            bounds: generator.bounds.map(|chain| terms(dim + 1, chain)),
+        }
+    }
+}
+
+/// Writes a chain as cell complexes in text have it: `+a,b 2*-b,c`.
+fn chain(terms: &[Term]) -> String {
+    let term = |Term(Factor(coefficient), name): &Term| {
+        let sign = if *coefficient < BigInt::from(0) { '-' } else { '+' };
+        let times = coefficient.magnitude();
+        let times = if *times == 1_u32.into() { String::new() } else { format!("{times}*") };
+        format!("{times}{sign}{}", name.join(","))
+    };
+    terms.iter().map(term).collect::<Vec<_>>().join(" ")
+}
+
+/// A number of JSON where it is less than 2⁵³ off 0, so that every reader takes it as it is, else a string of digits.
 struct Factor(BigInt);
 
 impl Serialize for Factor {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match u64::try_from(&self.0) {
-            Ok(number) if number < 1 << 53 => serializer.serialize_u64(number),
+        match i64::try_from(&self.0) {
+            Ok(number) if number.abs() < 1 << 53 => serializer.serialize_i64(number),
             _ => serializer.collect_str(&self.0),
         }
     }
@@ -127,17 +177,25 @@ impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         self.threads.start()?;
         let options = HomologyOptions { over: self.over.0, ..HomologyOptions::default() };
-        let found = match open(&self.file, self.format)? {
+        let (found, generators) = match open(&self.file, self.format)? {
             Source::Cells(_) if self.relative.is_some() => {
                 let message = "--relative wants a simplicial complex, and this is a cell complex".to_owned();
                 return Err(UsageError(message).into());
             }
-            Source::Cells(complex) => compute(|| homology(&Cells::new(&complex), &options))?,
+            Source::Cells(complex) => {
+                let name = |_: Dim, cell: u32| vec![cell.to_string()];
+                self.compute(&Cells::new(&complex), &options, &name)?
+            }
             Source::Simplicial(input) => with_view!(input.view(), complex => {
                 let name = tree_input::displayed(&self.file);
                 complex.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
                 let marks = self.relative.as_deref().map(|path| marked(&complex, path, self.format)).transpose()?;
-                compute(|| homology(&Simplices(&complex), &HomologyOptions { relative_to: marks.as_deref(), ..options }))?
+                let name = |dim: Dim, cell: u32| {
+                    let first = complex.simplices_of_dim(dim).bounds().0.index();
+                    simplex_labels(&complex, SimplexId::new(first + cell as usize))
+                };
+                let options = HomologyOptions { relative_to: marks.as_deref(), ..options };
+                self.compute(&Simplices(&complex), &options, &name)?
             }),
         };
         if self.json {
@@ -148,18 +206,37 @@ impl Args {
                 over: Self::ring_name(self.over),
                 cells: found.counts,
                 critical: found.critical,
+                generators,
             })?;
         } else {
-            output::stdout(|out| self.print(&found, out))?;
+            output::stdout(|out| self.print(&found, generators.as_deref(), out))?;
         }
         Ok(())
+    }
+
+    /// The homology, and generators in names if they are asked for.
+    fn compute(
+        &self,
+        chains: &impl Chains,
+        options: &HomologyOptions<'_>,
+        name: &impl Fn(Dim, u32) -> Vec<String>,
+    ) -> Result<(Homology, Option<Vec<Vec<Named>>>), HomologyError> {
+        let found = progress::during("computing homology", || homology(chains, options))?;
+        if !self.generators {
+            return Ok((found, None));
+        }
+        let generators = progress::during("finding generators", || generators(chains, options))?;
+        let named = |(dim, all): (Dim, Vec<Generator>)| {
+            all.into_iter().map(|generator| Named::new(dim, generator, name)).collect()
+        };
+        Ok((found, Some(generators.into_iter().enumerate().map(named).collect())))
     }
 
     fn ring_name(ring: Ring) -> String {
         ring.power(1)
     }
 
-    fn print(&self, found: &Homology, out: &mut dyn Write) -> io::Result<()> {
+    fn print(&self, found: &Homology, generators: Option<&[Vec<Named>]>, out: &mut dyn Write) -> io::Result<()> {
         let relative =
             self.relative.as_deref().map_or(String::new(), |path| format!(" relative to {}", path.display()));
         let (name, ring) = (tree_input::displayed(&self.file), Self::ring_name(self.over));
@@ -175,12 +252,18 @@ impl Args {
         };
         let rows: Vec<Vec<String>> = std::iter::once(head).chain((0..found.betti.len()).map(row)).collect();
         table(&rows, out)?;
-        writeln!(out, "\nEuler characteristic {}", grouped(found.euler_characteristic()))
+        writeln!(out, "\nEuler characteristic {}", grouped(found.euler_characteristic()))?;
+        for (dim, all) in generators.into_iter().flatten().enumerate() {
+            for Named { order, cycle, bounds } in all {
+                let order = order.as_ref().map_or(String::new(), |Factor(order)| format!(", of order {order}"));
+                writeln!(out, "\ngenerator of dimension {dim}{order}: {}", chain(cycle))?;
+                if let Some(bounds) = bounds {
+                    writeln!(out, "so many times the cycle is the boundary of: {}", chain(bounds))?;
+                }
+            }
+        }
+        Ok(())
     }
-}
-
-fn compute<E>(work: impl FnOnce() -> Result<Homology, E>) -> Result<Homology, E> {
-    progress::during("computing homology", work)
 }
 
 /// A group as a sum of cyclic ones.

@@ -6,6 +6,8 @@
 //! Smith normal form from elimination (`eliminate`). Memory: the boundaries of two dimensions, the inverse of one of them and some
 //! bytes a cell of these; never those of the whole complex.
 //!
+//! [`generators()`] gives cycles, too, as chains of the cells of the complex (`smith`, `generators`).
+//!
 //! ```
 //! use sig_tools::cells::read_cells;
 //! use sig_tools::homology::{Cells, Coefficients, HomologyOptions, homology};
@@ -23,8 +25,10 @@
 mod chains;
 mod cochains;
 mod eliminate;
+mod generators;
 mod matching;
 mod ring;
+mod smith;
 
 pub use num_bigint::BigInt;
 use sig_core::Dim;
@@ -32,6 +36,7 @@ use sig_core::Dim;
 pub use chains::{Cells, Chains, Level, Simplices};
 use cochains::Cochains;
 use eliminate::{Elimination, SmithForm};
+pub use generators::{Chain, Generator, generators};
 use matching::{Matching, pair};
 use ring::{Integers, Overflow, PrimeField, Ring, SmallIntegers, Sparse, add_multiple};
 
@@ -103,6 +108,14 @@ pub enum HomologyError {
         /// How many there are.
         count: usize,
     },
+    /// The reduction left more critical cells than generators can be told of.
+    #[error("{critical} critical cells of dimension {dim} are too many for generators")]
+    TooManyCritical {
+        /// The dimension.
+        dim: Dim,
+        /// How many there are.
+        critical: usize,
+    },
     /// The boundary of the boundary of some cell is not zero.
     #[error("in dimension {dim} there is a cell the boundary of whose boundary is not zero")]
     BoundaryOfBoundary {
@@ -162,17 +175,7 @@ impl From<HomologyError> for Failure {
 }
 
 fn compute<R: Ring>(ring: &R, chains: &impl Chains, relative_to: Option<&[Vec<bool>]>) -> Result<Homology, Failure> {
-    let counts = chains.counts();
-    if let Some((dim, &count)) = counts.iter().enumerate().find(|(_, count)| u32::try_from(**count + 1).is_err()) {
-        return Err(HomologyError::TooManyCells { dim, count }.into());
-    }
-    let mut gone = match relative_to {
-        Some(marks) => marks.to_vec(),
-        None => counts.iter().map(|&count| vec![false; count]).collect(),
-    };
-    if gone.len() != counts.len() || gone.iter().zip(&counts).any(|(gone, &count)| gone.len() != count) {
-        return Err(HomologyError::MalformedSubcomplex.into());
-    }
+    let mut gone = check_size(&chains.counts(), relative_to)?;
     let counts: Vec<usize> = gone.iter().map(|gone| gone.iter().filter(|&&gone| !gone).count()).collect();
     let mut critical = Vec::with_capacity(counts.len());
     // Of the boundaries between critical cells of dimension p and p − 1, for each p.
@@ -201,6 +204,21 @@ fn compute<R: Ring>(ring: &R, chains: &impl Chains, relative_to: Option<&[Vec<bo
         lower[dim] = Vec::new();
     }
     Ok(assemble(counts, critical, forms))
+}
+
+/// The marks of the cells of the subcomplex, if they are right, and if cells can be numbered.
+fn check_size(counts: &[usize], relative_to: Option<&[Vec<bool>]>) -> Result<Vec<Vec<bool>>, HomologyError> {
+    if let Some((dim, &count)) = counts.iter().enumerate().find(|(_, count)| u32::try_from(**count + 1).is_err()) {
+        return Err(HomologyError::TooManyCells { dim, count });
+    }
+    let marks = match relative_to {
+        Some(marks) => marks.to_vec(),
+        None => counts.iter().map(|&count| vec![false; count]).collect(),
+    };
+    if marks.len() != counts.len() || marks.iter().zip(counts).any(|(marks, &count)| marks.len() != count) {
+        return Err(HomologyError::MalformedSubcomplex);
+    }
+    Ok(marks)
 }
 
 /// What the boundaries of the critical cells of a dimension are computed from.

@@ -34,6 +34,9 @@ pub(super) trait Ring: Sync {
     /// Whether `a` is smaller than `b` in the sense of the division with remainder.
     fn is_smaller(&self, a: &Self::Element, b: &Self::Element) -> bool;
 
+    /// The element as an integer, of a prime field one from 0 on.
+    fn integer(&self, a: &Self::Element) -> BigInt;
+
     /// The element up to units, as an integer.
     fn magnitude(&self, a: &Self::Element) -> BigInt;
 }
@@ -77,6 +80,10 @@ impl Ring for SmallIntegers {
         a.unsigned_abs() < b.unsigned_abs()
     }
 
+    fn integer(&self, a: &i64) -> BigInt {
+        BigInt::from(*a)
+    }
+
     fn magnitude(&self, a: &i64) -> BigInt {
         BigInt::from(a.unsigned_abs())
     }
@@ -114,6 +121,10 @@ impl Ring for Integers {
 
     fn is_smaller(&self, a: &BigInt, b: &BigInt) -> bool {
         a.magnitude() < b.magnitude()
+    }
+
+    fn integer(&self, a: &BigInt) -> BigInt {
+        a.clone()
     }
 
     fn magnitude(&self, a: &BigInt) -> BigInt {
@@ -167,6 +178,10 @@ impl Ring for PrimeField {
 
     fn is_smaller(&self, a: &u64, b: &u64) -> bool {
         *a == 0 && *b != 0
+    }
+
+    fn integer(&self, a: &u64) -> BigInt {
+        BigInt::from(*a)
     }
 
     fn magnitude(&self, a: &u64) -> BigInt {

@@ -25,7 +25,7 @@ pub(crate) fn both(complex: &CellComplex) -> [Vec<usize>; 2] {
 }
 
 /// Gauss elimination: each reduced column is kept by its lowest row, scaled to 1 there.
-fn rank_of(columns: impl Iterator<Item = BTreeMap<usize, i64>>, prime: i64) -> usize {
+pub(crate) fn rank_of(columns: impl Iterator<Item = BTreeMap<usize, i64>>, prime: i64) -> usize {
     let mut pivots: BTreeMap<usize, BTreeMap<usize, i64>> = BTreeMap::new();
     for mut column in columns {
         column.values_mut().for_each(|value| *value = value.rem_euclid(prime));

@@ -45,6 +45,7 @@ fn check(complex: &CellComplex, betti: &[usize], torsion: &[&[u32]]) {
     assert_eq!(found.counts, complex.counts());
     assert_eq!(found.euler_characteristic(), complex.euler_characteristic());
     assert_eq!(over(complex, Coefficients::Rationals).betti, betti);
+    crate::cycles::check(complex);
     for prime in [2, 3, 5, 4_294_967_291] {
         let divisible = |dim: usize| torsion[dim].iter().filter(|&&factor| factor % prime == 0).count();
         let expected: Vec<usize> =

@@ -6,5 +6,6 @@
 #[allow(dead_code, reason = "shared with the tests of cell complexes")]
 #[path = "../cells/betti.rs"]
 mod betti;
+mod cycles;
 mod known;
 mod oracle;

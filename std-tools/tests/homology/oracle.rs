@@ -33,6 +33,7 @@ fn universal(betti: &[usize], torsion: &[Vec<BigInt>], prime: u32) -> Vec<usize>
 /// Checks the homology against ranks.
 pub(crate) fn agrees(complex: &CellComplex) {
     let integers = over(complex, Coefficients::Integers);
+    crate::cycles::check(complex);
     for prime in [2_u32, 3, 5] {
         let expected = betti(complex, prime.into());
         assert_eq!(over(complex, Coefficients::Prime(prime)).betti, expected, "over Z/{prime}");
