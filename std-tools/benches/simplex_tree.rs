@@ -232,8 +232,8 @@ fn contraction(peer: &Peer) -> Outcome<()> {
     println!("contraction of all edges that may be, microseconds an edge");
     // The same mean degree as 3,000 points at 0.35: the radius goes with the fourth root of the density.
     let at_degree = |count: usize| 0.35 * (3000.0 / count as f64).powf(0.25);
-    let runs =
-        [(3000, 0.35), (6000, 0.35), (6000, at_degree(6000)), (12_000, at_degree(12_000)), (24_000, at_degree(24_000))];
+    let scaled = [12_000, 48_000].map(|count| (count, at_degree(count)));
+    let runs = [(3000, 0.35), (6000, 0.35)].into_iter().chain(scaled);
     for (count, radius) in runs {
         let graph = graph(&points, count, radius)?;
         let mut own = Vec::new();
@@ -243,7 +243,7 @@ fn contraction(peer: &Peer) -> Outcome<()> {
             let mut tree = SimplexTree::from_graph(&graph)?;
             tree.expand(sig_core::MAX_DIM)?;
             let before = tree.num_simplices();
-            let (time, contracted) = timed(|| tree.contract_all(1, LinkCondition::Required));
+            let (time, contracted) = timed(|| tree.contract_all(1, LinkCondition::Required, None));
             let done = contracted?.len();
             own.push(time / done as f64);
             summary =

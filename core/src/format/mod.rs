@@ -20,8 +20,8 @@ pub use container::{Container, Sections};
 pub use encode::{EncodeError, Encoder};
 pub use error::{FormatError, Rule, TableError};
 pub use header::{Header, Kind};
-pub(crate) use section::first_from;
 pub use section::{Column, Section, SectionKind};
+pub(crate) use section::{first_from, num_up_to};
 pub use wire::swap_byte_order;
 
 /// The first eight bytes of every file.

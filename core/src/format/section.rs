@@ -279,11 +279,31 @@ impl<'a> Column<'a> {
 /// waits for the indices; halving takes the guess from it, for there each step needs the one before.
 const SHORT: usize = 16;
 
+/// Into how many parts a step of a search in many indices divides them.
+const PARTS: usize = 16;
+
 /// How many of the indices in a range, which increase, are less than a value.
 #[inline]
 fn num_below<I: Index>(column: &[I], range: &Range<usize>, value: usize) -> usize {
     let indices = column.get(range.clone()).unwrap_or(&[]);
     indices.partition_point(|index| index.to_usize() < value)
+}
+
+/// How many of some indices, which do not decrease, are not more than a value.
+///
+/// A step reads an index of each of [`PARTS`] parts, for the memory delivers them together, where halving waits for one
+/// after the other.
+pub(crate) fn num_up_to<I: Index>(indices: &[I], value: usize) -> usize {
+    let (mut before, mut rest) = (0, indices);
+    while rest.len() > PARTS {
+        let step = rest.len() / PARTS;
+        let is_in_or_after = |part: &usize| rest.get(part * step).is_some_and(|index| index.to_usize() <= value);
+        let part = (1..PARTS).filter(is_in_or_after).count();
+        let end = if part + 1 == PARTS { rest.len() } else { (part + 1) * step };
+        before += part * step;
+        rest = rest.get(part * step..end).unwrap_or(&[]);
+    }
+    before + rest.iter().filter(|index| index.to_usize() <= value).count()
 }
 
 /// The first place from `start` on in indices that increase that holds `value` or more; the end if none does. Cost: the

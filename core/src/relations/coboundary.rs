@@ -23,10 +23,10 @@ impl<I: Index> Complex<'_, I> {
         dim: Dim,
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
-        scratch.start(self.num_simplices())?;
         if let Some(tree) = self.upward_tree(simplex) {
             return tree.coboundary(simplex, dim, scratch);
         }
+        scratch.start(self.num_simplices())?;
         let gathered = self.gather_cofaces(simplex, dim, scratch);
         scratch.unmark_found(0);
         gathered?;

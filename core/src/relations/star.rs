@@ -43,10 +43,10 @@ impl<I: Index> Complex<'_, I> {
         itself: bool,
         scratch: &'s mut Scratch<'_, I>,
     ) -> Result<Simplices<'s, I>, ScratchError> {
-        scratch.start(self.num_simplices())?;
         if let Some(tree) = self.upward_tree(simplex) {
             return if itself { tree.star(simplex, scratch) } else { tree.restricted_star(simplex, scratch) };
         }
+        scratch.start(self.num_simplices())?;
         let own = self.dim_of(simplex).zip(I::from_usize(simplex.index()));
         let gathered = match own {
             Some((dim, id)) => self.queue_star(simplex, dim, id, itself, scratch),

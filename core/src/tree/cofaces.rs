@@ -11,19 +11,20 @@
 
 use core::ops::Range;
 
+use super::neighbours::{Filter, MANY};
 use super::{Path, Tree};
 use crate::format::{Column, first_from};
 use crate::id::{Dim, Index, SimplexId};
 use crate::relations::Simplices;
 use crate::scratch::{Found, Queue, Scratch, ScratchError};
 
-/// A node on the way to cofaces, or consecutive ones that are cofaces.
+/// A node on the way to cofaces, or consecutive nodes that are cofaces.
 #[derive(Clone, Copy)]
 struct Pending {
     node: usize,
     /// How many vertices of σ the word has; not more than there are bits in a mask.
     own: u32,
-    /// If it has not all: the first common neighbour that may come next, or one before it. Else: how many nodes there are.
+    /// If it has all: how many nodes there are. Else nothing.
     rest: usize,
 }
 
@@ -38,9 +39,16 @@ impl Pending {
     }
 
     #[inline]
-    fn unpack<I: Index>((node, mask): (I, u32)) -> Self {
+    fn unpack(node: usize, mask: u32) -> Self {
         let own = mask & ((1 << Self::OWN_BITS) - 1);
-        Self { node: node.to_usize(), own, rest: (mask >> Self::OWN_BITS) as usize }
+        Self { node, own, rest: (mask >> Self::OWN_BITS) as usize }
+    }
+
+    /// The nodes, where σ has `size` vertices.
+    #[inline]
+    fn nodes(&self, size: usize) -> Range<usize> {
+        let count = if self.own as usize == size { self.rest } else { 1 };
+        self.node..self.node.saturating_add(count)
     }
 
     /// Queues it; more nodes than a mask can count as several.
@@ -67,6 +75,8 @@ struct Wanted<'p> {
     from: Dim,
     /// The greatest.
     to: Dim,
+    /// The vertices that may be in a word beside σ's, as far as they come before σ's last one.
+    common: Filter,
 }
 
 impl Wanted<'_> {
@@ -85,11 +95,12 @@ impl Wanted<'_> {
 impl<I: Index> Tree<'_, I> {
     /// ⋆σ: the simplex and all simplices that have it as a face, in the order of their ids.
     ///
-    /// Cost: [`vertices`](Self::vertices); the common neighbours of the vertices, each list searched for those of the
-    /// shortest; then a pass over the children of each simplex whose word is made of common neighbours and the first
-    /// vertices of σ (in a flag complex each is a prefix of a coface), and a sequential write of what is below. The
-    /// queue of the scratch holds the common neighbours and such simplices of two dimensions; no marks are needed.
-    /// Without the file's lower neighbours the common ones are looked for among all vertices before σ's first one.
+    /// Cost: [`vertices`](Self::vertices); a pass over the neighbours of each vertex, or where they are many a search
+    /// for each of those of the vertex that has the fewest; then a pass over the children of each simplex whose word
+    /// is made of common neighbours and the first vertices of σ (in a flag complex each is a prefix of a coface), and
+    /// a sequential write of what is below. The queue of the scratch holds the common neighbours and such simplices
+    /// of two dimensions; no marks are needed. Without the file's lower neighbours the common ones are looked for
+    /// among all vertices before σ's first one.
     ///
     /// # Errors
     /// [`ScratchError`] if the scratch is too small; it can be used again.
@@ -195,7 +206,8 @@ impl<I: Index> Tree<'_, I> {
         let path = self.path(simplex);
         queue.clear();
         self.common_neighbours(&path, queue)?;
-        let wanted = Wanted { path: &path, from: dims.start, to: dims.end.saturating_sub(1) };
+        let mut wanted = Wanted { path: &path, from: dims.start, to: dims.end.saturating_sub(1), common: Filter::NONE };
+        queue.ids().iter().for_each(|vertex| wanted.common.insert(vertex.to_usize()));
         let num_common = queue.len();
         let (common, mut level) = queue.split();
         let gathered = match self.last_vertices {
@@ -220,30 +232,41 @@ impl<I: Index> Tree<'_, I> {
         // In a tree all that is queued is different simplices. On a buffer that is not a tree it ends too, after as many.
         let (mut queued, most) = (level.len(), found.len() + self.num_simplices());
         for dim in first..=wanted.to {
-            let (count, below) = (level.len(), self.levels.ids(dim + 1));
-            self.fetch_children(wanted, labels, &below, level);
+            let below = self.levels.ids(if dim < wanted.to { dim + 1 } else { self.levels.dims() });
+            let mut reported = Ok(());
+            // What has no children is done with.
+            level.retain(|node, mask| {
+                let pending = Pending::unpack(node, mask);
+                let nodes = pending.nodes(wanted.size());
+                let is_wanted = pending.own as usize == wanted.size() && dim >= wanted.from;
+                if is_wanted && found.len() <= most && reported.is_ok() {
+                    reported = found.extend(nodes.start..nodes.end.min(self.num_simplices()));
+                }
+                let children = self.children_in(&below, nodes);
+                self.fetch_children(labels, &children);
+                (!children.is_empty()).then_some(mask)
+            });
+            reported?;
+            let count = level.len();
             for place in 0..count {
-                let Some(pending) = level.get(place).map(Pending::unpack) else { break };
+                let Some((node, mask)) = level.get(place) else { break };
+                let pending = Pending::unpack(node.to_usize(), mask);
+                let children = self.children_in(&below, pending.nodes(wanted.size()));
                 let before = level.len();
                 if pending.own as usize == wanted.size() {
-                    let cofaces = pending.node..pending.node.saturating_add(pending.rest).min(self.num_simplices());
-                    if dim >= wanted.from {
-                        found.extend(cofaces.clone())?;
-                    }
-                    let children = self.children_in(&below, cofaces);
-                    if dim < wanted.to && !children.is_empty() {
-                        Pending::new(children.start, pending.own, children.len()).push(wanted.size(), level)?;
-                    }
+                    Pending::new(children.start, pending.own, children.len()).push(wanted.size(), level)?;
                 } else {
-                    let children = self.children_in(&below, pending.node..pending.node.saturating_add(1));
                     let may_add = wanted.has_room(dim, pending.own);
-                    next_words(wanted.path, labels, children, (pending, may_add), common, level)?;
+                    next_words(wanted, labels, children, (pending, may_add), common, level)?;
                 }
                 queued += level.len() - before;
-                if queued > self.num_simplices() || found.len() > most {
-                    found.truncate(most);
+                if queued > self.num_simplices() {
                     return Ok(());
                 }
+            }
+            if found.len() > most {
+                found.truncate(most);
+                return Ok(());
             }
             level.remove_first(count);
         }
@@ -263,27 +286,21 @@ impl<I: Index> Tree<'_, I> {
         let mut next = 0;
         while let Some((vertex, 0)) = common(next) {
             next += 1;
-            Pending::new(vertex.to_usize(), 0, next).push(wanted.size(), level)?;
+            Pending::new(vertex.to_usize(), 0, 0).push(wanted.size(), level)?;
         }
         if let Some(node) = wanted.path.get(own - 1) {
-            let rest = if own == wanted.size() { 1 } else { next };
+            let rest = usize::from(own == wanted.size());
             Pending::new(node.id, u32::try_from(own).unwrap_or(0), rest).push(wanted.size(), level)?;
         }
         Ok(own - 1)
     }
 
-    /// Reads the first of what will be read of the children of all nodes of a level, none waiting for another.
-    fn fetch_children<L: Index>(&self, wanted: &Wanted<'_>, labels: &[L], below: &Range<usize>, level: &Queue<'_, I>) {
-        for pending in (0..level.len()).filter_map(|place| level.get(place)).map(Pending::unpack) {
-            let is_coface = pending.own as usize == wanted.size();
-            let nodes = if is_coface { pending.rest } else { 1 };
-            let children = self.children_in(below, pending.node..pending.node.saturating_add(nodes));
+    /// Reads the first of what will be read of some children, so that the memory delivers it before it is waited for.
+    #[inline]
+    fn fetch_children<L: Index>(&self, labels: &[L], children: &Range<usize>) {
+        if !children.is_empty() {
             self.fetch_offset(children.start);
-            if is_coface {
-                self.fetch_offset(children.end);
-            } else {
-                core::hint::black_box(labels.get(children.start).copied());
-            }
+            core::hint::black_box(labels.get(children.start).copied());
         }
     }
 }
@@ -292,36 +309,37 @@ impl<I: Index> Tree<'_, I> {
 /// those, or with that vertex.
 #[inline]
 fn next_words<I: Index, L: Index>(
-    path: &Path,
+    wanted: &Wanted<'_>,
     labels: &[L],
     children: Range<usize>,
     (from, may_add): (Pending, bool),
     common: &Queue<'_, I>,
     level: &mut Queue<'_, I>,
 ) -> Result<(), ScratchError> {
-    let (Some(own), Some(labels)) = (path.get(from.own as usize), labels.get(children.clone())) else { return Ok(()) };
-    let common = common.ids();
-    let (mut next, mut child) = (from.rest, 0);
-    while let (Some(label), Some(vertex), true) = (labels.get(child), common.get(next), may_add) {
-        let (label, vertex) = (label.to_usize(), vertex.to_usize());
-        if label >= own.label || vertex >= own.label {
-            break;
-        }
-        if vertex < label {
-            next = first_from(common, next + 1, label);
-        } else if vertex > label {
-            child = first_from(labels, child + 1, vertex);
-        } else {
-            next += 1;
-            Pending::new(children.start + child, from.own, next).push(path.len(), level)?;
+    let (Some(own), Some(labels)) = (wanted.path.get(from.own as usize), labels.get(children.clone())) else {
+        return Ok(());
+    };
+    let size = wanted.size();
+    let mut child = 0;
+    if may_add && labels.len() < MANY {
+        while let Some(label) = labels.get(child).map(|label| label.to_usize()).filter(|&label| label < own.label) {
+            if wanted.common.may_have(label) {
+                Pending::new(children.start + child, from.own, 0).push(size, level)?;
+            }
             child += 1;
+        }
+    } else if may_add {
+        for vertex in common.ids().iter().map(|vertex| vertex.to_usize()).take_while(|&vertex| vertex < own.label) {
+            child = first_from(labels, child, vertex);
+            if labels.get(child).is_some_and(|label| label.to_usize() == vertex) {
+                Pending::new(children.start + child, from.own, 0).push(size, level)?;
+            }
         }
     }
     child = first_from(labels, child, own.label);
     if labels.get(child).is_some_and(|label| label.to_usize() == own.label) {
-        let is_coface = from.own as usize + 1 == path.len();
-        let rest = if is_coface { 1 } else { next };
-        Pending::new(children.start + child, from.own + 1, rest).push(path.len(), level)?;
+        let is_coface = from.own as usize + 1 == size;
+        Pending::new(children.start + child, from.own + 1, usize::from(is_coface)).push(size, level)?;
     }
     Ok(())
 }

@@ -27,7 +27,7 @@ use core::ops::Range;
 use heapless::Vec;
 
 use crate::complex::{Levels, Sections, SimplexRange};
-use crate::format::{Column, Container, FormatError, Kind, SectionKind};
+use crate::format::{Column, Container, FormatError, Kind, SectionKind, num_up_to};
 use crate::id::{Dim, Index, MAX_DIM, SimplexId, VertexId};
 use crate::view::{common_methods, find_word};
 
@@ -151,7 +151,7 @@ impl<'a, I: Index> Tree<'a, I> {
 
     /// The parent: the face without the last vertex; `None` for a vertex, whose parent is the root.
     ///
-    /// Cost: a binary search over the child offsets of the dimension below; one read in a SIG.
+    /// Cost: a search over the child offsets of the dimension below, 16 parts at a step; one read in a SIG.
     #[must_use]
     pub fn parent(&self, simplex: SimplexId) -> Option<SimplexId> {
         self.parent_of(self.dim_of(simplex)?, simplex.index()).map(SimplexId::new)
@@ -189,7 +189,7 @@ impl<'a, I: Index> Tree<'a, I> {
         }
         // The last node whose first child is not after this one.
         let offsets = self.child_offsets.get(level.clone())?;
-        let after = offsets.partition_point(|offset| offset.to_usize() <= node);
+        let after = num_up_to(offsets, node);
         after.checked_sub(1).map(|before| level.start + before)
     }
 

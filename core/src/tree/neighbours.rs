@@ -8,24 +8,31 @@ use crate::id::Index;
 use crate::scratch::{Queue, ScratchError};
 
 impl<I: Index> Tree<'_, I> {
-    /// Queues the vertices before σ's last one that are neighbours of all of σ's vertices, increasing, each with the number
-    /// of σ's vertices before it in place of the mask.
+    /// Queues the vertices before σ's last one that are neighbours of all of σ's vertices, and perhaps a few that are not
+    /// of one, increasing, each with the number of σ's vertices before it in place of the mask.
+    ///
+    /// A filter is made of a short list of neighbours, a long one is searched for each vertex that is left.
     pub(super) fn common_neighbours(&self, path: &Path, queue: &mut Queue<'_, I>) -> Result<(), ScratchError> {
         let rarest = self.rarest(path);
-        self.neighbours(path, rarest, |vertex, before| {
-            I::from_usize(vertex).map_or(Ok(()), |vertex| queue.push(vertex, before))
+        let others = || path.iter().enumerate().filter_map(|(place, node)| (place != rarest).then_some(node.label));
+        let mut filter = Filter::ALL;
+        for vertex in others().filter(|&vertex| self.is_short(vertex)) {
+            let mut own = Filter::NONE;
+            let upper = [(&self.last_vertices, self.child_range(0, vertex))];
+            let lower = self.lower.iter().map(|lower| (&lower.vertices, self.lower_rows(vertex).unwrap_or(0..0)));
+            lower.chain(upper).for_each(|(column, rows)| own.insert_rows(column, rows));
+            filter.intersect(&own);
+        }
+        self.neighbours(path, rarest, |vertex, _| {
+            let Some(id) = I::from_usize(vertex).filter(|_| filter.may_have(vertex)) else { return Ok(()) };
+            let before = path.iter().filter(|node| node.label < vertex).count();
+            queue.push(id, u32::try_from(before).unwrap_or(0))
         })?;
-        for node in path.iter().enumerate().filter_map(|(place, node)| (place != rarest).then_some(node)) {
-            if queue.len() == 0 {
-                break;
-            }
-            let vertex = node.label;
+        for vertex in others().filter(|&vertex| !self.is_short(vertex)) {
             let (mut lower, mut upper) = (self.lower_rows(vertex), self.child_range(0, vertex));
             queue.retain(|other, before| {
-                if other > vertex {
-                    return advance(&self.last_vertices, &mut upper, other).then_some(before + 1);
-                }
                 let adjacent = match (&self.lower, &mut lower) {
+                    _ if other > vertex => advance(&self.last_vertices, &mut upper, other),
                     (Some(lower), Some(rows)) => advance(&lower.vertices, rows, other),
                     _ => self.child(1, other, vertex).is_some(),
                 };
@@ -33,6 +40,13 @@ impl<I: Index> Tree<'_, I> {
             });
         }
         Ok(())
+    }
+
+    /// Whether a vertex has so few neighbours, all of them listed, that a filter is made of them.
+    fn is_short(&self, vertex: usize) -> bool {
+        let degree =
+            self.child_range(0, vertex).len().saturating_add(self.lower_rows(vertex).map_or(MANY, |rows| rows.len()));
+        degree < MANY
     }
 
     /// The place in the word of the vertex that has the fewest neighbours, as far as they have to be looked through.
@@ -78,6 +92,51 @@ impl<I: Index> Tree<'_, I> {
         Some(start..bound(vertex.saturating_add(1)).clamp(start, len))
     }
 }
+
+/// From how many vertices on a list is searched, not walked.
+pub(super) const MANY: usize = 128;
+
+/// Which vertices may be in a set, by their last bits: of one that it has not, it is sure.
+pub(super) struct Filter {
+    words: [u64; 16],
+}
+
+impl Filter {
+    const ALL: Self = Self { words: [u64::MAX; 16] };
+    pub(super) const NONE: Self = Self { words: [0; 16] };
+
+    #[inline]
+    pub(super) fn insert(&mut self, vertex: usize) {
+        if let Some(word) = self.words.get_mut(vertex / 64 % 16) {
+            *word |= 1 << (vertex % 64);
+        }
+    }
+
+    #[inline]
+    fn insert_rows(&mut self, column: &Column<'_>, rows: Range<usize>) {
+        match column {
+            Column::U16(vertices) => self.insert_all(vertices.get(rows)),
+            Column::U32(vertices) => self.insert_all(vertices.get(rows)),
+            Column::U64(vertices) => self.insert_all(vertices.get(rows)),
+            _ => {}
+        }
+    }
+
+    #[inline]
+    fn insert_all<L: Index>(&mut self, vertices: Option<&[L]>) {
+        vertices.unwrap_or_default().iter().for_each(|vertex| self.insert(vertex.to_usize()));
+    }
+
+    fn intersect(&mut self, other: &Self) {
+        self.words.iter_mut().zip(&other.words).for_each(|(word, other)| *word &= other);
+    }
+
+    #[inline]
+    pub(super) fn may_have(&self, vertex: usize) -> bool {
+        self.words.get(vertex / 64 % 16).is_some_and(|word| word >> (vertex % 64) & 1 == 1)
+    }
+}
+
 /// Moves the start of `rows`, in which `column` increases, to the first that holds `value` or more; whether it holds
 /// `value`.
 #[inline]

@@ -58,7 +58,7 @@ impl Args {
         let (mut tree, vertices) = tree_input::read(&self.input)?;
         tree_input::log(&self.input, &tree);
         let input_simplices = tree.counts().to_vec();
-        let collapses = progress::during("collapsing", || tree.collapse_all())?;
+        let collapses = progress::part_of("collapsing", |progress| tree.collapse_all(progress))?;
         if let Some(path) = &self.sequence {
             let existing = self.target.target.existing();
             output::to_path(path, existing, |out| write_sequence(&collapses, &vertices, out))?;

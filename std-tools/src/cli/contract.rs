@@ -76,7 +76,8 @@ impl Args {
         }
         let mut contractions: Vec<Contraction> = Vec::new();
         if self.all {
-            contractions = progress::during("contracting", || tree.contract_all(self.target, condition))?;
+            contractions =
+                progress::part_of("contracting", |progress| tree.contract_all(self.target, condition, progress))?;
         }
         let contractions = edges.len() + contractions.len();
         output::log(format_args!("did    {} contractions", output::grouped(contractions)));

@@ -9,9 +9,10 @@ use clap::ValueEnum;
 use serde::Serialize;
 use sig_core::IndexWidth;
 use sig_tools::build::{self, BuildError, BuildOptions, Built};
+use sig_tools::export::{Format, export};
 use sig_tools::frozen::{FrozenTree, LastVertices};
-use sig_tools::simplex_tree::SimplexTree;
-use sig_tools::store::{EncodeOptions, Encoding};
+use sig_tools::store::{EncodeOptions, Encoding, Loaded};
+use sig_tools::with_view;
 
 use super::output::{self, Content, grouped};
 use super::progress;
@@ -148,10 +149,16 @@ pub(super) fn write(tree: FrozenTree, target: &FrozenTarget, memory: Option<u64>
         Kind::Tree => write(Encoding::of_tree(&tree, &options)?)?,
         Kind::Sig => write(Encoding::new(&complete(tree, memory)?, &options)?)?,
         Kind::Gudhi => {
-            let (thawed, _) = SimplexTree::thaw(&tree)?;
+            // As it would be in a file, from which `sig tree text` and `sig export` write.
+            let file = Loaded::from_file_bytes(Encoding::of_tree(&tree, &EncodeOptions::default())?.to_bytes()?)?;
             drop(tree);
+            let view = file.view();
             let mut bytes = 0;
-            to_path(target, |out| thawed.write_text(Counted { out, bytes: &mut bytes }))?;
+            to_path(target, |out| {
+                let mut out = io::BufWriter::new(Counted { out, bytes: &mut bytes });
+                with_view!(view, complex => export(&complex, Format::Gudhi, &mut out)).map_err(io::Error::other)?;
+                out.flush()
+            })?;
             (bytes, None)
         }
     };

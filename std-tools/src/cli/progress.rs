@@ -65,6 +65,17 @@ pub(super) fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
     result
 }
 
+/// Does some work that tells how much of how much is done.
+pub(super) fn part_of<T>(what: &'static str, work: impl FnOnce(Option<&dyn Fn(u64, u64)>) -> T) -> T {
+    if !is_watched() {
+        return work(None);
+    }
+    let bars = Phases::new();
+    let result = work(Some(&|done, total| bars.step(what, done, total)));
+    bars.clear();
+    result
+}
+
 /// Bars for the phases of building, one after the other.
 pub(super) struct Phases {
     current: Mutex<Option<(&'static str, ProgressBar)>>,

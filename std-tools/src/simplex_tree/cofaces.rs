@@ -86,7 +86,7 @@ impl SimplexTree {
                 .collect(),
         };
         lower.sort_unstable();
-        lower.extend_from_slice(self.arena.labels(self.child_at(Place::top(vertex))));
+        lower.extend(self.arena.labels(self.child_at(Place::top(vertex))));
         lower
     }
 

@@ -87,19 +87,22 @@ impl SimplexTree {
     ///
     /// The pairs of the highest dimension come first, of these those whose face is last in lexicographic order, and then
     /// those that collapsing has set free, the last one first. What is left depends on such choices; there is none that is
-    /// always best.
+    /// always best. After each dimension `progress` is told how many simplices are done with, of how many.
     ///
     /// Cost: O(p) for each simplex, and O(p `D_m`) for its facets; 4 (p + 1) + 9 bytes each while it runs, and the memory
     /// of the tree that is left.
     ///
     /// # Errors
     /// [`SizeError`], which cannot be where the tree has room itself.
-    pub fn collapse_all(&mut self) -> Result<Collapses, SizeError> {
+    pub fn collapse_all(&mut self, progress: Option<&dyn Fn(u64, u64)>) -> Result<Collapses, SizeError> {
         let frozen = self.freeze();
         let vertices: Vec<u32> = self.tops.labels().collect();
         let mut run = Run::new(&frozen);
         for dim in (0..frozen.first.len().saturating_sub(1)).rev() {
             run.collapse_faces(dim, &vertices);
+            if let Some(progress) = progress {
+                progress((frozen.num_simplices - frozen.first[dim + 1]) as u64, frozen.num_simplices as u64);
+            }
         }
         let Run { present, collapses, .. } = run;
         if !collapses.is_empty() {

@@ -106,24 +106,28 @@ impl SimplexTree {
 
     /// Contracts edges, those of least filtration value first, until there are `target` vertices or no edge is left that
     /// may be contracted; the smaller label is kept. Edges that fail the link condition are tried again after their ends
-    /// have changed, and all of them once more when no other is left, until that contracts none.
+    /// have changed, and all of them once more when no other is left, until that contracts none. `progress` is told how many
+    /// are contracted, of as many as the target takes.
     ///
     /// Cost: [`link_condition`](Self::link_condition) for each trial, [`contract`](Self::contract) for each success. Label
     /// lists are kept meanwhile, so that both depend on the stars of the two vertices and not on the complex.
     ///
     /// # Errors
     /// [`ContractError::Size`].
-    pub fn contract_all(&mut self, target: usize, condition: LinkCondition) -> Result<Vec<Contraction>, ContractError> {
+    pub fn contract_all(
+        &mut self,
+        target: usize,
+        condition: LinkCondition,
+        progress: Option<&dyn Fn(u64, u64)>,
+    ) -> Result<Vec<Contraction>, ContractError> {
+        let total = self.num_vertices().saturating_sub(target) as u64;
         let listed = self.has_label_lists();
         if !listed {
             self.keep_label_lists()?;
         }
-        let mut queue = Queue::default();
-        for edge in self.skeleton(1).filter(|simplex| simplex.dim() == 1) {
-            if let [a, b] = edge.word()[..] {
-                queue.push(a, b, edge.value());
-            }
-        }
+        let edges = self.skeleton(1).filter(|simplex| simplex.dim() == 1);
+        let edges = edges.filter_map(|edge| Some((edge.value(), <[u32; 2]>::try_from(edge.word()).ok()?)));
+        let mut queue = Queue::new(edges.map(|(value, [a, b])| (OrderedValue(value), a, b)).collect());
         let mut contractions = Vec::new();
         let (mut refused, mut since) = (Vec::new(), 0);
         while self.num_vertices() > target {
@@ -144,6 +148,9 @@ impl SimplexTree {
             }
             self.contract(a, b)?;
             contractions.push(Contraction { kept: a, removed: b, value });
+            if let Some(progress) = progress {
+                progress(contractions.len() as u64, total);
+            }
             for other in self.neighbours(a) {
                 let (a, b) = (a.min(other), a.max(other));
                 if let Some(edge) = self.find(&[a, b]) {
@@ -166,8 +173,10 @@ struct Image {
 }
 
 /// Edges by filtration value, then by labels; each at most once.
-#[derive(Default)]
 struct Queue {
+    /// Those that waited at first, the next one last: most of all, and sorted they are read one after the other.
+    first: Vec<(OrderedValue, u32, u32)>,
+    /// Those that have come since.
     heap: BinaryHeap<Reverse<(OrderedValue, u32, u32)>>,
     /// The value with which an edge is waiting; others of it in the heap are out of date.
     waiting: HashMap<(u32, u32), u64>,
@@ -198,6 +207,12 @@ impl Ord for OrderedValue {
 }
 
 impl Queue {
+    fn new(mut edges: Vec<(OrderedValue, u32, u32)>) -> Self {
+        edges.sort_unstable_by(|one, other| other.cmp(one));
+        let waiting = edges.iter().map(|&(OrderedValue(value), a, b)| ((a, b), value.to_bits())).collect();
+        Self { first: edges, heap: BinaryHeap::new(), waiting }
+    }
+
     fn push(&mut self, a: u32, b: u32, value: f64) {
         if self.waiting.insert((a, b), value.to_bits()) != Some(value.to_bits()) {
             self.heap.push(Reverse((OrderedValue(value), a, b)));
@@ -206,7 +221,12 @@ impl Queue {
 
     fn pop(&mut self) -> Option<(u32, u32, f64)> {
         loop {
-            let Reverse((OrderedValue(value), a, b)) = self.heap.pop()?;
+            let is_first = match (self.first.last(), self.heap.peek()) {
+                (Some(first), Some(Reverse(pushed))) => first <= pushed,
+                (first, _) => first.is_some(),
+            };
+            let next = if is_first { self.first.pop() } else { self.heap.pop().map(|Reverse(next)| next) };
+            let (OrderedValue(value), a, b) = next?;
             if self.waiting.get(&(a, b)) == Some(&value.to_bits()) {
                 self.waiting.remove(&(a, b));
                 return Some((a, b, value));

@@ -5,7 +5,7 @@
 
 use sig_core::{Dim, MAX_DIM};
 
-use super::arena::NONE;
+use super::arena::{NONE, Node};
 use super::filtration::largest_of_facets;
 use super::node::Place;
 use super::{ExpandError, Simplex, SimplexTree, SizeError};
@@ -87,14 +87,14 @@ impl SimplexTree {
 
     /// The later siblings that are neighbours of a sibling, each with the value of the simplex that it makes.
     fn clique_children(&self, set: u32, index: usize, children: &mut Vec<(u32, f64)>) {
-        let siblings = self.arena.labels(set);
-        let upper = self.child_at(Place::top(siblings[index]));
-        let (labels, value) = (self.arena.labels(upper), self.arena.value(set, index));
+        let siblings = self.arena.nodes(set);
+        let upper = self.child_at(Place::top(siblings[index].label));
+        let (neighbours, value) = (self.arena.nodes(upper), self.arena.value(set, index));
         let mut other = 0;
-        for (later, &label) in siblings.iter().enumerate().skip(index + 1) {
-            other += labels[other..].iter().take_while(|&&neighbour| neighbour < label).count();
-            match labels.get(other) {
-                Some(&neighbour) if neighbour == label => {
+        for (later, &Node { label, .. }) in siblings.iter().enumerate().skip(index + 1) {
+            other += neighbours[other..].iter().take_while(|neighbour| neighbour.label < label).count();
+            match neighbours.get(other) {
+                Some(neighbour) if neighbour.label == label => {
                     let edge = self.arena.value(upper, other);
                     children.push((label, value.max(self.arena.value(set, later)).max(edge)));
                 }
@@ -141,9 +141,8 @@ impl SimplexTree {
         is_blocked: &mut impl FnMut(&[u32], f64) -> bool,
     ) -> Result<(), SizeError> {
         for index in (0..self.arena.len(set)).rev() {
-            let siblings = self.arena.labels(set);
-            let later = siblings[index + 1..].to_vec();
-            word.push(siblings[index]);
+            let later: Vec<u32> = self.arena.labels(set).skip(index + 1).collect();
+            word.push(self.arena.nodes(set)[index].label);
             let mut children = Vec::new();
             for label in later {
                 word.push(label);

@@ -66,7 +66,7 @@ impl SimplexTree {
             let is_last = dim + 1 == frozen.first.len();
             let mut below = Vec::new();
             for &set in &sets {
-                for (index, &label) in self.arena.labels(set).iter().enumerate() {
+                for (index, label) in self.arena.labels(set).enumerate() {
                     push_vertex(frozen, ranks.of(label));
                     if let Some(values) = &mut frozen.filtration {
                         values.push(self.arena.value(set, index));

@@ -111,7 +111,7 @@ impl SimplexTree {
     /// the two filtration values, so that values stay monotone.
     ///
     /// Cost: O(2^p `D_m`), the paper's (2.2.1): one merge for each of the 2^p sets of siblings that the faces are in,
-    /// each O(d) if something is new in it. 12 bytes for each of the sets of one dimension while it runs.
+    /// each O(d) if something is new in it. 12 bytes for each of the sets of two dimensions, which the tree keeps for the next.
     ///
     /// # Errors
     /// [`InsertError`]: if the vertices do not increase, or the value is not a number. Nothing is inserted then.
@@ -119,7 +119,8 @@ impl SimplexTree {
         check(word, value)?;
         let value = value + 0.0;
         let before = self.num_simplices();
-        let mut nodes = Vec::with_capacity(word.len());
+        let [mut nodes, mut next] = std::mem::take(&mut self.faces);
+        nodes.clear();
         for (position, &label) in word.iter().enumerate() {
             self.insert_top(label, value, true);
             nodes.push((Place::top(label), narrow(position + 1)));
@@ -127,15 +128,15 @@ impl SimplexTree {
         nodes.pop();
         // By dimension rather than depth-first: then the sets of one dimension are known together, and the processor can
         // wait for all of them at a time, which in a large tree are nowhere near.
-        let mut next = Vec::new();
         for dim in 1..word.len() {
             self.touch_children(&nodes);
+            next.clear();
             for &(node, position) in &nodes {
                 self.insert_faces(node, word, position as usize, (value, dim), &mut next)?;
             }
             std::mem::swap(&mut nodes, &mut next);
-            next.clear();
         }
+        self.faces = [nodes, next];
         Ok(self.num_simplices() - before)
     }
 
@@ -188,7 +189,7 @@ impl SimplexTree {
             }
             return Ok(set);
         }
-        let moved = self.arena.resize(set, self.arena.len(set) + missing)?;
+        let moved = self.arena.extend(set, self.arena.len(set) + missing)?;
         if moved != set {
             self.set_child_at(parent, moved);
         }

@@ -48,7 +48,7 @@ impl SimplexTree {
         let Some(lists) = &mut self.lists else { return };
         for index in 0..self.arena.len(set) {
             if self.arena.slot(set, index) == UNLISTED {
-                let slot = lists.add(self.arena.labels(set)[index], dim, set);
+                let slot = lists.add(self.arena.nodes(set)[index].label, dim, set);
                 self.arena.set_slot(set, index, slot);
             }
         }
@@ -57,7 +57,7 @@ impl SimplexTree {
     /// Tells the lists where the siblings of a set of p-simplices are now, all that are in one.
     pub(super) fn list_moved(&mut self, set: u32, dim: Dim) {
         let Some(lists) = &mut self.lists else { return };
-        for (index, &label) in self.arena.labels(set).iter().enumerate() {
+        for (index, label) in self.arena.labels(set).enumerate() {
             let slot = self.arena.slot(set, index);
             if slot == UNLISTED {
                 continue;
@@ -71,7 +71,7 @@ impl SimplexTree {
     /// Takes a sibling of a set of p-simplices out of its list.
     pub(super) fn unlist(&mut self, set: u32, index: usize, dim: Dim) {
         let Some(lists) = &mut self.lists else { return };
-        let (label, slot) = (self.arena.labels(set)[index], self.arena.slot(set, index));
+        let (label, slot) = (self.arena.nodes(set)[index].label, self.arena.slot(set, index));
         let Some(list) = lists.sets.get_mut(&key(label, dim)).filter(|list| (slot as usize) < list.len()) else {
             return;
         };

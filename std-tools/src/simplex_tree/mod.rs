@@ -52,12 +52,13 @@ pub use thaw::Vertices;
 
 use arena::Arena;
 use lists::LabelLists;
+use node::Place;
 use top::Tops;
 
 /// A simplicial complex that changes, as its simplex tree: one node a simplex (simplex-tree-2012, 2.1).
 ///
 /// Vertices have 32-bit labels, any but the largest. A simplex is named by its word, the strictly increasing labels of
-/// its vertices. With filtration values a node takes 16 bytes and a set of siblings 12 more; without, 8 and 12. Values
+/// its vertices. With filtration values a node takes 16 bytes and a set of siblings 16 more; without, 8 and 16. Values
 /// are numbers, infinities among them; −0 is kept as 0.
 ///
 /// ```
@@ -80,6 +81,8 @@ pub struct SimplexTree {
     lists: Option<LabelLists>,
     /// The number of simplices of each dimension.
     counts: [usize; MAX_DIM + 1],
+    /// Memory for [`insert_with_faces`](Self::insert_with_faces), from one call to the next.
+    faces: [Vec<(Place, u32)>; 2],
 }
 
 /// The empty complex, with filtration values.
@@ -108,6 +111,7 @@ impl SimplexTree {
             arena: Arena::new(filtered, listed),
             lists: listed.then(LabelLists::default),
             counts: [0; MAX_DIM + 1],
+            faces: Default::default(),
         }
     }
 

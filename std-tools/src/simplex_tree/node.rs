@@ -208,7 +208,7 @@ impl SimplexTree {
     pub(super) fn label_at(&self, place: Place) -> u32 {
         match place.set {
             NONE => place.index,
-            set => self.arena.labels(set).get(place.index as usize).copied().unwrap_or(u32::MAX),
+            set => self.arena.nodes(set).get(place.index as usize).map_or(u32::MAX, |node| node.label),
         }
     }
 

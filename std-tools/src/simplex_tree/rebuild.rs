@@ -71,7 +71,7 @@ impl SimplexTree {
     fn copied(&self, listed: bool, stays: impl Fn(Dim, f64) -> bool) -> Result<Self, SizeError> {
         let mut copy = Self::with_layout(self.has_filtration(), listed);
         let children = |set: u32, dim: Dim, members: &mut Vec<Member<u32>>| {
-            for (index, &label) in self.arena.labels(set).iter().enumerate() {
+            for (index, label) in self.arena.labels(set).enumerate() {
                 let value = self.arena.value(set, index);
                 if stays(dim, value) {
                     members.push((label, value, self.arena.child(set, index)));

@@ -16,6 +16,17 @@ impl SimplexTree {
     /// # Errors
     /// [`SizeError`]: if the smaller sets find no room.
     pub fn remove(&mut self, word: &[u32]) -> Result<usize, SizeError> {
+        // A simplex of the highest dimension is a leaf without cofaces, whose parent is on the way to it.
+        if let [prefix @ .., last] = word
+            && self.dim() == Some(prefix.len())
+            && !prefix.is_empty()
+        {
+            let Some(parent) = self.locate(prefix) else { return Ok(0) };
+            let set = self.child_at(parent);
+            let Ok(index) = self.arena.search(set, *last) else { return Ok(0) };
+            self.remove_leaf(Place::within(set, index), parent, prefix.len())?;
+            return Ok(1);
+        }
         let before = self.num_simplices();
         let roots = self.coface_roots(word);
         self.remove_subtrees(&roots)?;
@@ -28,7 +39,12 @@ impl SimplexTree {
             let dim = self.dim_of_set(root.set);
             self.release_below(self.child_at(root), dim + 1);
             self.set_child_at(root, NONE);
-            self.remove_leaf(root, dim)?;
+            if root.set == NONE {
+                self.counts[0] -= 1;
+                self.tops.remove(root.index);
+            } else {
+                self.remove_leaf(root, self.parent_of_set(root.set), dim)?;
+            }
         }
         Ok(())
     }
@@ -47,16 +63,10 @@ impl SimplexTree {
         self.arena.release(set);
     }
 
-    /// Removes a node without children, of dimension `dim`.
-    fn remove_leaf(&mut self, place: Place, dim: Dim) -> Result<(), SizeError> {
+    /// Removes a node without children, of dimension `dim` > 0.
+    fn remove_leaf(&mut self, Place { set, index }: Place, parent: Place, dim: Dim) -> Result<(), SizeError> {
         self.counts[dim] -= 1;
-        let Place { set, index } = place;
-        if set == NONE {
-            self.tops.remove(index);
-            return Ok(());
-        }
         self.unlist(set, index as usize, dim);
-        let parent = self.parent_of_set(set);
         if self.arena.len(set) == 1 {
             self.set_child_at(parent, NONE);
             self.arena.release(set);

@@ -1,5 +1,7 @@
 //! Complexes of which it is known what they collapse to.
 
+use std::cell::RefCell;
+
 use sig_tools::frozen::FrozenTree;
 use sig_tools::generate::sphere4;
 use sig_tools::graph::Graph;
@@ -36,7 +38,7 @@ fn simplices_and_cones_collapse_to_a_point() {
     for dim in 1..=9 {
         let mut simplex = tree_of(&[&Vec::from_iter(0..=dim)]);
         let mut model = model_of(&simplex);
-        let collapses = simplex.collapse_all().unwrap();
+        let collapses = simplex.collapse_all(None).unwrap();
         assert_eq!((simplex.counts(), collapses.len()), (&[1][..], (1 << dim) - 1));
         if dim < 7 {
             replay(&mut model, &collapses);
@@ -54,7 +56,7 @@ fn simplices_and_cones_collapse_to_a_point() {
                 word.sort_unstable();
                 cone.insert_with_faces(&word, 1.0).unwrap();
             }
-            cone.collapse_all().unwrap();
+            cone.collapse_all(None).unwrap();
             assert_eq!(cone.counts(), [1], "{base:?}");
         }
     }
@@ -106,14 +108,14 @@ fn what_has_no_free_face_stays() {
         assert_eq!(tree.euler_characteristic(), 1);
         let before = tree.clone();
         assert!(tree.iter().all(|simplex| tree.free_coface(&simplex.word()).is_none()));
-        assert!(tree.collapse_all().unwrap().is_empty());
+        assert!(tree.collapse_all(None).unwrap().is_empty());
         assert_eq!(tree, before);
     }
     let mut sphere = tree_of(&[&[0, 1, 2], &[0, 1, 3], &[0, 2, 3], &[1, 2, 3]]);
-    assert!(sphere.collapse_all().unwrap().is_empty());
+    assert!(sphere.collapse_all(None).unwrap().is_empty());
     // A sphere without a triangle is a disk.
     assert_eq!(sphere.remove(&[1, 2, 3]), Ok(1));
-    sphere.collapse_all().unwrap();
+    sphere.collapse_all(None).unwrap();
     assert_eq!(sphere.counts(), [1]);
 }
 
@@ -129,7 +131,7 @@ fn a_torus_without_a_triangle_collapses_to_two_circles() {
     assert_eq!(torus.counts(), [7, 21, 14]);
     torus.remove(&[0, 1, 3]).unwrap();
     let mut model = model_of(&torus);
-    let collapses = torus.collapse_all().unwrap();
+    let collapses = torus.collapse_all(None).unwrap();
     replay(&mut model, &collapses);
     model.assert_is(&torus);
     // A graph without a vertex of degree one, of the Euler characteristic of two circles that meet.
@@ -152,10 +154,13 @@ fn the_link_condition_tells_apart_full_and_hollow() {
     let mut octahedron =
         tree_of(&[&[0, 2, 4], &[0, 2, 5], &[0, 3, 4], &[0, 3, 5], &[1, 2, 4], &[1, 2, 5], &[1, 3, 4], &[1, 3, 5]]);
     assert!(octahedron.link_condition(0, 2));
-    octahedron.contract_all(1, LinkCondition::Required).unwrap();
+    octahedron.contract_all(1, LinkCondition::Required, None).unwrap();
     assert_eq!(octahedron.counts(), [4, 6, 4]);
-    octahedron.contract_all(1, LinkCondition::Ignored).unwrap();
+    let told = RefCell::new(Vec::new());
+    let tell = |done, total| told.borrow_mut().push((done, total));
+    octahedron.contract_all(1, LinkCondition::Ignored, Some(&tell)).unwrap();
     assert_eq!(octahedron.counts(), [1]);
+    assert_eq!(told.into_inner(), [(1, 3), (2, 3), (3, 3)]);
     assert_eq!(octahedron.contract(0, 1), Err(ContractError::NoEdge(0, 1)));
 }
 

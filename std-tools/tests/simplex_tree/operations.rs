@@ -163,7 +163,7 @@ fn apply(operation: Operation, model: &mut Model, tree: &mut SimplexTree) {
             }
         }
         Operation::CollapseAll => {
-            let collapses = tree.collapse_all().unwrap();
+            let collapses = tree.collapse_all(None).unwrap();
             replay(model, &collapses);
             assert_eq!(free_pairs(model), []);
         }
@@ -267,7 +267,7 @@ proptest! {
     ) {
         let (mut model, mut tree) = crate::model::both(&words);
         let before = model.euler();
-        for contraction in tree.contract_all(1, LinkCondition::Required).unwrap() {
+        for contraction in tree.contract_all(1, LinkCondition::Required, None).unwrap() {
             model.contract(contraction.kept, contraction.removed);
         }
         model.assert_is(&tree);
