@@ -6,6 +6,7 @@ mod format_book;
 mod fuzz_corpus;
 mod golden;
 mod hostile;
+mod hostile_inputs;
 mod known_triangulations;
 mod paper_figures;
 mod relations;
