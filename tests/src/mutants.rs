@@ -18,8 +18,7 @@ use crate::queries::{ask_everything, ask_tree, reseal};
 pub struct Random(pub u64);
 
 impl Random {
-    /// The next 64 bits.
-    pub fn next(&mut self) -> u64 {
+    fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut mixed = self.0;
         mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -28,11 +27,8 @@ impl Random {
     }
 
     /// A number below `bound`; 0 if that is 0.
-    ///
-    /// # Panics
-    /// Never.
     pub fn below(&mut self, bound: usize) -> usize {
-        usize::try_from(self.next() % bound.max(1) as u64).expect("less than a usize")
+        usize::try_from(self.bits() % bound.max(1) as u64).unwrap_or(0)
     }
 
     fn of<T: Clone>(&mut self, choices: &[T]) -> Option<T> {
@@ -145,9 +141,9 @@ fn index(total: u64, random: &mut Random) -> u64 {
     match random.below(8) {
         0 => u64::MAX,
         1 => u64::MAX - 1,
-        2 => random.next(),
+        2 => random.bits(),
         3 => total,
-        _ => random.next() % total.saturating_add(2),
+        _ => random.bits() % total.saturating_add(2),
     }
 }
 
@@ -170,7 +166,7 @@ fn stop_code(bytes: &mut AlignedBytes, random: &mut Random) {
     let (stops, entries): (Vec<_>, Vec<_>) =
         range.step_by(size).partition(|&at| bytes[at..at + size].iter().all(|&byte| byte == 0xFF));
     let (places, value) = match random.below(2) {
-        0 => (stops, random.next() % total.saturating_add(1)),
+        0 => (stops, random.bits() % total.saturating_add(1)),
         _ => (entries, u64::MAX),
     };
     if let Some(at) = random.of(&places) {
@@ -260,7 +256,7 @@ fn field(bytes: &mut AlignedBytes, random: &mut Random) {
     let old = bytes[at];
     let value = match random.below(4) {
         0 => u64::MAX,
-        1 => random.next(),
+        1 => random.bits(),
         2 => u64::from(old) + 1,
         _ => random.below(80) as u64,
     };
