@@ -6,11 +6,12 @@ use sig_core::format::{
     TableError,
 };
 use sig_core::{AnyComplex, Complex, IndexWidth, VertexId, with_complex};
-use sig_tests::encode::{Names, Options, encode};
+use sig_tests::encode::{Names, Options, encode, encode_tree};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
 use sig_tests::queries::reseal;
-use sig_tools::store::AlignedBytes;
+use sig_tools::Loaded;
+use sig_tools::store::{AlignedBytes, verify};
 
 fn example() -> Oracle {
     Oracle::new(&known::words("0123 014 25 6"))
@@ -116,19 +117,35 @@ fn the_encoder_refuses_what_is_no_file() {
     assert_eq!(short, [7; 100]);
 }
 
+/// The same complex as a tree.
+fn everything_in_a_tree() -> AlignedBytes {
+    let options = Options { parity: None, ..Options::everything(&example(), IndexWidth::Bits16) };
+    encode_tree(&example(), &options)
+}
+
 /// Every flipped bit of a file is found, and located: in the header and table by their checksum or the field, in a
 /// section by the checksum of its block, between sections as padding.
 #[test]
 fn every_flipped_bit_is_found_where_it_is() {
-    let bytes = everything();
-    let spans: Vec<_> = Container::from_bytes(&bytes).unwrap().spans().collect();
+    for bytes in [everything(), everything_in_a_tree()] {
+        assert_flipped_bits_are_found(&bytes, |damaged| format::verify(&damaged));
+        // As `sig verify` goes about it: opening comes first, which damage of the lookup section does not survive.
+        assert_flipped_bits_are_found(&bytes, |damaged| {
+            let loaded = Loaded::from_file_bytes(damaged)?;
+            verify::checksums(&loaded.file_bytes()).map(|_| ())
+        });
+    }
+}
+
+fn assert_flipped_bits_are_found(bytes: &AlignedBytes, verify: impl Fn(AlignedBytes) -> Result<(), FormatError>) {
+    let spans: Vec<_> = Container::from_bytes(bytes).unwrap().spans().collect();
     let table_end = spans[0].2.start;
     for at in 0..bytes.len() {
         let section = spans.iter().find(|(_, _, range)| range.contains(&at));
         for bit in 0..8 {
             let mut damaged = bytes.clone();
             damaged[at] ^= 1 << bit;
-            match (format::verify(&damaged).unwrap_err(), section) {
+            match (verify(damaged).unwrap_err(), section) {
                 (FormatError::Checksum { section, dim, offset, length }, Some((kind, of_dim, range))) => {
                     assert_eq!((section, dim), (*kind, *of_dim));
                     let inside = offset..offset + length;

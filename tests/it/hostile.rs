@@ -3,121 +3,83 @@
 //!
 //! The damage is drawn from SplitMix64 with the seeds below, so that a failure can be had again from its number.
 
-use sig_core::format::{Container, ENTRY_BYTES, HEADER_BYTES, SectionKind};
-use sig_core::{IndexWidth, with_complex, with_tree};
-use sig_tests::encode::{Options, encode, encode_tree};
-use sig_tests::known;
-use sig_tests::oracle::Oracle;
-use sig_tests::queries::{ask_everything, ask_tree, reseal};
+use std::time::{Duration, Instant};
+
+use sig_core::IndexWidth;
+use sig_core::format::{Container, SectionKind};
+use sig_tests::mutants::{Damage, Fate, Random, fate, medium_files, mutant, small_files};
+use sig_tests::queries::reseal;
 use sig_tools::View;
 use sig_tools::store::AlignedBytes;
 
 /// The seed of the first mutant; mutant k has this plus k.
 const SEED: u64 = 2004;
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
+/// Simplices of a mutant that are asked everything.
+const ASKED: usize = 24;
 
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ mixed >> 31
-    }
+/// The longest that a mutant may take: a thousand times what the slowest does, and little beside an endless loop.
+const PATIENCE: Duration = Duration::from_secs(20);
 
-    fn below(&mut self, bound: usize) -> usize {
-        usize::try_from(self.next() % bound.max(1) as u64).unwrap()
-    }
-}
-
-fn originals() -> Vec<AlignedBytes> {
-    let complexes =
-        ["0123 0145 0156 027 078 09", "01234 1235 236 37 4 5", "012 023 045 056 07", "0 1 2 3", "012345", ""];
-    let mut originals = Vec::new();
-    for words in complexes {
-        let oracle = Oracle::new(&known::words(words));
-        for width in IndexWidth::ALL {
-            originals.push(encode(&oracle, &Options::bare(width)));
-            originals.push(encode(&oracle, &Options { tree: true, ..Options::bare(width) }));
-            if oracle.is_thin() {
-                originals.push(encode(&oracle, &Options { pairs: true, ..Options::bare(width) }));
-            }
+/// Each of so many mutants is refused, or answers every query within bounds. Returns how many of each kind of damage
+/// were refused and how many answered.
+fn try_mutants(mutants: u64) -> [(Damage, usize, usize); 6] {
+    let files = [small_files(), medium_files()].concat();
+    let mut fates = Damage::ALL.map(|damage| (damage, 0, 0));
+    let mut slowest = (Duration::ZERO, 0);
+    for number in SEED..SEED + mutants {
+        let (damage, bytes) = mutant(&files, number);
+        let start = Instant::now();
+        let (_, refused, answered) = &mut fates[damage as usize];
+        match fate(&bytes, ASKED) {
+            Fate::Refused => *refused += 1,
+            Fate::Answered(_) => *answered += 1,
         }
-        originals.push(encode(&oracle, &Options::everything(&oracle, IndexWidth::Bits16)));
-        let everything = Options::everything(&oracle, IndexWidth::Bits16);
-        originals.push(encode_tree(&oracle, &Options { parity: None, ..everything }));
-        originals.push(encode_tree(&oracle, &Options::bare(IndexWidth::Bits32)));
-        originals.push(encode_tree(&oracle, &Options { lower: true, ..Options::bare(IndexWidth::Bits64) }));
+        slowest = slowest.max((start.elapsed(), number));
+        assert!(slowest.0 < PATIENCE, "mutant {number} took {:?}", slowest.0);
     }
-    originals
+    println!("{mutants} mutants of {} files; the slowest, {}, took {:?}", files.len(), slowest.1, slowest.0);
+    for (damage, refused, answered) in fates {
+        println!("{damage:?}: {refused} refused, {answered} answered everything");
+    }
+    fates
 }
 
-fn ask(bytes: &AlignedBytes) -> bool {
-    match View::from_bytes(bytes) {
-        Ok(View::Complex(any)) => with_complex!(any, complex => { ask_everything(&complex, usize::MAX); }),
-        Ok(View::Tree(any)) => with_tree!(any, tree => { ask_tree(&tree, usize::MAX); }),
-        Err(_) => return false,
+fn assert_all_were_tried(fates: [(Damage, usize, usize); 6]) {
+    for (damage, refused, answered) in fates {
+        let tried = match damage {
+            Damage::Element | Damage::StopCode | Damage::Section => answered > refused,
+            Damage::Shape | Damage::Field => refused > 0 && answered > 0,
+            // No file is whole at another length.
+            Damage::Length => refused > 0 && answered == 0,
+        };
+        assert!(tried, "{damage:?}: {refused} refused, {answered} answered");
     }
-    true
 }
 
-/// What queries read.
-const ARRAYS: [SectionKind; 9] = [
-    SectionKind::Lookup,
-    SectionKind::Boundary,
-    SectionKind::Pointers,
-    SectionKind::Lists,
-    SectionKind::Flags,
-    SectionKind::ChildOffsets,
-    SectionKind::LastVertices,
-    SectionKind::LowerOffsets,
-    SectionKind::LowerNeighbours,
-];
+#[test]
+fn mutants() {
+    assert_all_were_tried(try_mutants(3_000));
+}
 
-/// Sets one element of one section of indices, or one bit, to something else.
-fn damage_array(bytes: &mut AlignedBytes, random: &mut Random) {
-    let container = Container::from_bytes(bytes).unwrap();
-    let total = usize::try_from(container.header().num_simplices).unwrap();
-    let sections: Vec<_> = container.sections().zip(container.spans()).collect();
-    let sections: Vec<(usize, std::ops::Range<usize>)> = sections
-        .into_iter()
-        .filter(|(section, _)| ARRAYS.contains(&section.kind) && !section.column.is_empty())
-        .map(|(section, (_, _, range))| (range.len() / section.column.len(), range))
-        .collect();
-    if sections.is_empty() {
-        return;
-    }
-    let (size, range) = sections[random.below(sections.len())].clone();
-    if size == 0 {
-        bytes[range.start + random.below(range.len())] ^= 1 << random.below(8);
-        return;
-    }
-    let at = range.start + size * random.below(range.len() / size);
-    let value = match random.below(6) {
-        0 => u64::MAX,
-        1 => u64::MAX - 1,
-        2 => random.next(),
-        3 => total as u64,
-        _ => random.below(total + 2) as u64,
-    };
-    bytes[at..at + size].copy_from_slice(&value.to_le_bytes()[..size]);
+/// `.ci/run --mutants`; with `-- --ignored --nocapture` it tells the figures.
+#[test]
+#[ignore = "a minute"]
+fn a_hundred_thousand_mutants() {
+    assert_all_were_tried(try_mutants(120_000));
 }
 
 #[test]
 fn damaged_arrays() {
-    let originals = originals();
+    let originals = small_files();
     let (mut opened, mut mutants) = (0, 0);
     for seed in SEED..SEED + 4000 {
         let mut random = Random(seed);
         let mut bytes = originals[random.below(originals.len())].clone();
         for _ in 0..=random.below(4) {
-            if Container::from_bytes(&bytes).is_ok() {
-                damage_array(&mut bytes, &mut random);
-            }
+            bytes = Damage::Element.applied(&bytes, &mut random);
         }
-        opened += usize::from(ask(&bytes));
+        opened += usize::from(fate(&bytes, usize::MAX) != Fate::Refused);
         mutants += 1;
     }
     assert!(opened > mutants / 2, "only {opened} of {mutants} got past the opening");
@@ -126,7 +88,7 @@ fn damaged_arrays() {
 /// All elements of one section the same: the lists without an end, all pointers to one place, all facets one.
 #[test]
 fn arrays_of_one_value() {
-    for original in originals() {
+    for original in small_files() {
         let container = Container::from_bytes(&original).unwrap();
         let total = container.header().num_simplices;
         let sections: Vec<_> = container
@@ -140,7 +102,7 @@ fn arrays_of_one_value() {
                 for element in bytes[range.clone()].chunks_exact_mut(size.max(1)) {
                     element.copy_from_slice(&value.to_le_bytes()[..size.max(1)]);
                 }
-                ask(&bytes);
+                let _ = fate(&bytes, usize::MAX);
             }
         }
     }
@@ -149,31 +111,13 @@ fn arrays_of_one_value() {
 /// Fields of header and table, the checksum of both made to fit.
 #[test]
 fn damaged_headers_and_tables() {
-    let originals = originals();
+    let originals = small_files();
     let mut opened = 0;
     for seed in SEED..SEED + 6000 {
         let mut random = Random(seed);
         let mut bytes = originals[random.below(originals.len())].clone();
         for _ in 0..=random.below(2) {
-            let entries = Container::from_bytes(&bytes).map_or(5, |container| container.header().sections) as usize;
-            let entries = entries.min((bytes.len() - HEADER_BYTES) / ENTRY_BYTES);
-            let (at, size) = match random.below(3) {
-                0 => [(14, 2), (18, 1), (20, 4), (24, 8), (32, 8), (32, 1), (44, 4)][random.below(7)],
-                _ => {
-                    let entry = HEADER_BYTES + ENTRY_BYTES * random.below(entries);
-                    let (field, size) =
-                        [(0, 2), (2, 1), (3, 1), (4, 2), (6, 2), (8, 8), (16, 8), (16, 1)][random.below(8)];
-                    (entry + field, size)
-                }
-            };
-            let old = bytes[at];
-            let value = match random.below(4) {
-                0 => u64::MAX,
-                1 => random.next(),
-                2 => u64::from(old) + 1,
-                _ => random.below(80) as u64,
-            };
-            bytes[at..at + size].copy_from_slice(&value.to_le_bytes()[..size]);
+            bytes = Damage::Field.applied(&bytes, &mut random);
         }
         reseal(&mut bytes);
         sig_tests::fuzz::open(&bytes);

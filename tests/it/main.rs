@@ -15,6 +15,7 @@ mod fuzz_corpus;
 mod golden;
 #[cfg(target_endian = "little")]
 mod hostile;
+mod hostile_inputs;
 mod known_triangulations;
 mod paper_figures;
 mod relations;

@@ -9,6 +9,7 @@ pub mod conformance;
 pub mod encode;
 pub mod fuzz;
 pub mod known;
+pub mod mutants;
 pub mod oracle;
 pub mod paper;
 pub mod queries;

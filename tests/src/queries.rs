@@ -83,8 +83,12 @@ fn memory<I: Index>(total: usize) -> Memory<I> {
     Memory::new(total.div_ceil(32), 2 * total.min(4096), 4 * total.min(4096))
 }
 
+/// Up to so many simplices, spread over all dimensions, and some past the end.
 fn ids(total: usize, simplices: usize) -> impl Iterator<Item = SimplexId> {
-    (0..total.min(simplices)).chain([total, total + 7, usize::MAX]).map(SimplexId::new)
+    (0..total)
+        .step_by(total.div_ceil(simplices.max(1)).max(1))
+        .chain([total, total + 7, usize::MAX])
+        .map(SimplexId::new)
 }
 
 fn ended(count: usize, limit: usize) -> usize {

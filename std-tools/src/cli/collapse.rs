@@ -6,6 +6,7 @@ use serde::Serialize;
 use sig_tools::simplex_tree::{Collapses, Vertices};
 
 use super::frozen_output::{self, FrozenTarget};
+use super::input::How;
 use super::{UsageError, output, progress, tree_input};
 
 /// Collapse free pairs until none is left
@@ -24,6 +25,9 @@ pub(super) struct Args {
     /// A file of this program, or GUDHI's simplex-tree text; `-` is standard input
     #[arg(value_name = "IN")]
     input: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     #[command(flatten)]
     target: FrozenTarget,
@@ -55,7 +59,7 @@ impl Args {
             }
             output::check(sequence, self.target.target.existing(), inputs)?;
         }
-        let (mut tree, vertices) = tree_input::read(&self.input)?;
+        let (mut tree, vertices) = tree_input::read(&self.input, &self.how)?;
         tree_input::log(&self.input, &tree);
         let input_simplices = tree.counts().to_vec();
         let collapses = progress::part_of("collapsing", |progress| tree.collapse_all(progress))?;

@@ -12,7 +12,7 @@ use sig_tools::store::atomic::Existing;
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Loaded, with_view};
 
-use super::input::Input;
+use super::input::{How, Input};
 use super::output::{self, grouped, table};
 use super::tree_input::{self, Opened, displayed};
 use super::{Threads, UsageError, progress};
@@ -36,6 +36,9 @@ Examples:
 pub(super) struct Args {
     /// A file of this program, a mesh or a list of simplices; `-` is standard input
     file: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     /// The format of a mesh or list; by default it is found by content, then by name
     #[arg(short, long, value_parser = super::named(Format::ALL, Format::name, Format::description))]
@@ -95,7 +98,7 @@ impl Args {
     /// The top simplices of the file.
     fn read(&self) -> anyhow::Result<Tops> {
         let name = displayed(&self.file);
-        match tree_input::open(&self.file)? {
+        match tree_input::open(&self.file, &self.how)? {
             Opened::Ours(input) => progress::during("reading", || tops(&input, &name)),
             Opened::Other(reader, length) => {
                 let soup = progress::reading_of(length, &name, |progress| {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use sig_tools::simplex_tree::{Contraction, LinkCondition, SimplexTree, Vertices};
 
 use super::frozen_output::{self, FrozenTarget};
+use super::input::How;
 use super::{UsageError, output, progress, tree_input};
 
 /// Contract edges, keeping the homotopy type
@@ -24,6 +25,9 @@ pub(super) struct Args {
     /// A file of this program, or GUDHI's simplex-tree text; `-` is standard input
     #[arg(value_name = "IN")]
     input: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     #[command(flatten)]
     target_file: FrozenTarget,
@@ -68,7 +72,7 @@ impl Args {
             .collect::<Option<_>>()
             .ok_or_else(|| UsageError("--edge wants the labels of two vertices, like 17,4".to_owned()))?;
         let condition = if self.ignore_link_condition { LinkCondition::Ignored } else { LinkCondition::Required };
-        let (mut tree, vertices) = tree_input::read(&self.input)?;
+        let (mut tree, vertices) = tree_input::read(&self.input, &self.how)?;
         tree_input::log(&self.input, &tree);
         let input_simplices = tree.counts().to_vec();
         for &edge in &edges {

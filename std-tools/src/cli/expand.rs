@@ -11,6 +11,7 @@ use sig_tools::soup::{Coordinates, Labels};
 use sig_tools::with_view;
 
 use super::expansion::{self, Expansion, Skeleton};
+use super::input::How;
 use super::output::{self, grouped};
 use super::tree_input::{self, Opened};
 use super::{UsageError, progress};
@@ -35,6 +36,9 @@ pub(super) struct Args {
     /// A file of this program, GUDHI's simplex-tree text, or a list of edges; `-` is standard input
     #[arg(value_name = "IN")]
     input: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     #[command(flatten)]
     expansion: Expansion,
@@ -75,7 +79,7 @@ impl Args {
     /// The graph of the input, and the name of its format.
     fn read(&self) -> anyhow::Result<(Skeleton, &'static str)> {
         let name = tree_input::displayed(&self.input);
-        let (reader, length) = match tree_input::open(&self.input)? {
+        let (reader, length) = match tree_input::open(&self.input, &self.how)? {
             Opened::Other(reader, length) => (reader, length),
             Opened::Ours(input) => {
                 if self.format.is_some() {

@@ -8,7 +8,7 @@ use sig_tools::export::{self, ExportError, Format};
 use sig_tools::store::Access;
 use sig_tools::with_view;
 
-use super::input::Input;
+use super::input::How;
 use super::{UsageError, output};
 
 /// Write a complex in another format
@@ -26,6 +26,9 @@ pub(super) struct Args {
     file: PathBuf,
 
     #[command(flatten)]
+    how: How,
+
+    #[command(flatten)]
     target: output::Target,
 
     /// The format; by default the one that the name of OUT stands for
@@ -35,7 +38,7 @@ pub(super) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
-        export(&self.file, &self.target, self.format()?)
+        export(&self.file, &self.how, &self.target, self.format()?)
     }
 
     fn format(&self) -> Result<Format, UsageError> {
@@ -57,10 +60,10 @@ impl Args {
 }
 
 /// Writes the complex in `file` to the target, and says what is left out.
-pub(super) fn export(file: &Path, target: &output::Target, format: Format) -> anyhow::Result<()> {
+pub(super) fn export(file: &Path, how: &How, target: &output::Target, format: Format) -> anyhow::Result<()> {
     let (path, existing) = (&target.output, target.existing());
     output::check(path, existing, &[file.to_owned()])?;
-    let input = Input::open(file, Access::Normal)?;
+    let input = how.open(file, Access::Normal)?;
     let view = input.view();
     let file = || file.display().to_string();
     // As long as writing, and a damaged file would come out as a mesh that is another.

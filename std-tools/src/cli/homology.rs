@@ -21,7 +21,7 @@ use sig_tools::names::{simplex_labels, vertex_label};
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Loaded, with_view};
 
-use super::input::Input;
+use super::input::{How, Input};
 use super::output::{self, grouped, table};
 use super::tree_input::{self, Opened};
 use super::{Threads, UsageError, mcc_input, progress};
@@ -44,6 +44,9 @@ Examples:
 pub(super) struct Args {
     /// The complex; `-` is standard input
     file: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     /// The coefficients: `Z`, `Q`, or `Zp` for a prime p, as in `Z2`
     #[arg(long, value_name = "RING", default_value = "Z")]
@@ -173,11 +176,14 @@ enum Source {
     Cells(CellComplex),
 }
 
+/// The generators of each dimension, in names.
+type NamedGenerators = Vec<Vec<Named>>;
+
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         self.threads.start()?;
         let options = HomologyOptions { over: self.over.0, ..HomologyOptions::default() };
-        let (found, generators) = match open(&self.file, self.format)? {
+        let (found, generators) = match open(&self.file, &self.how, self.format)? {
             Source::Cells(_) if self.relative.is_some() => {
                 let message = "--relative wants a simplicial complex, and this is a cell complex".to_owned();
                 return Err(UsageError(message).into());
@@ -189,7 +195,7 @@ impl Args {
             Source::Simplicial(input) => with_view!(input.view(), complex => {
                 let name = tree_input::displayed(&self.file);
                 complex.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
-                let marks = self.relative.as_deref().map(|path| marked(&complex, path, self.format)).transpose()?;
+                let marks = self.relative.as_deref().map(|path| marked(&complex, path, &self.how, self.format)).transpose()?;
                 let name = |dim: Dim, cell: u32| {
                     let first = complex.simplices_of_dim(dim).bounds().0.index();
                     simplex_labels(&complex, SimplexId::new(first + cell as usize))
@@ -220,7 +226,7 @@ impl Args {
         chains: &impl Chains,
         options: &HomologyOptions<'_>,
         name: &impl Fn(Dim, u32) -> Vec<String>,
-    ) -> Result<(Homology, Option<Vec<Vec<Named>>>), HomologyError> {
+    ) -> Result<(Homology, Option<NamedGenerators>), HomologyError> {
         let found = progress::during("computing homology", || homology(chains, options))?;
         if !self.generators {
             return Ok((found, None));
@@ -280,13 +286,13 @@ fn group(over: Ring, betti: usize, torsion: &[BigInt]) -> String {
 }
 
 /// Opens a complex in any of its forms.
-fn open(path: &Path, format: Option<Format>) -> anyhow::Result<Source> {
+fn open(path: &Path, how: &How, format: Option<Format>) -> anyhow::Result<Source> {
     if mcc_input::is_one(path) {
         let file = mcc_input::open(path)?;
         // Every front has the same homology, and the base complex is the smallest.
         return Ok(Source::Cells(Front::new(file.view()).complex().clone()));
     }
-    let (reader, length) = match tree_input::open(path)? {
+    let (reader, length) = match tree_input::open(path, how)? {
         Opened::Ours(input) => return Ok(Source::Simplicial(input)),
         Opened::Other(reader, length) => (reader, length),
     };
@@ -311,9 +317,9 @@ fn is_cells(head: &[u8], name: &str) -> bool {
 }
 
 /// For each dimension and simplex of the complex whether it belongs to the one at `path`, by the labels of its vertices.
-fn marked<C: Relations>(complex: &C, path: &Path, format: Option<Format>) -> anyhow::Result<Vec<Vec<bool>>> {
+fn marked<C: Relations>(complex: &C, path: &Path, how: &How, format: Option<Format>) -> anyhow::Result<Vec<Vec<bool>>> {
     let name = tree_input::displayed(path);
-    let Source::Simplicial(input) = open(path, format)? else {
+    let Source::Simplicial(input) = open(path, how, format)? else {
         return Err(UsageError(format!("{name}: --relative wants simplices, and these are cells")).into());
     };
     let dims = complex.dim().map_or(0, |dim| dim + 1);

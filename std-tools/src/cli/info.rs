@@ -12,7 +12,7 @@ use sig_tools::View;
 use sig_tools::analysis::{Analysis, num_top_simplices};
 use sig_tools::store::Access;
 
-use super::input::Input;
+use super::input::How;
 use super::output::{self, grouped, table};
 use super::{extract, mcc_input, progress};
 
@@ -28,6 +28,9 @@ pub(super) struct Args {
     /// The file; `-` is standard input
     file: PathBuf,
 
+    #[command(flatten)]
+    how: How,
+
     /// Count the top simplices of a tree, by a search for each facet; of a SIG they are always counted
     #[arg(long)]
     tops: bool,
@@ -42,7 +45,7 @@ impl Args {
         if mcc_input::is_one(&self.file) {
             return extract::info(&self.file, self.json);
         }
-        let input = Input::open(&self.file, Access::Sequential)?;
+        let input = self.how.open(&self.file, Access::Sequential)?;
         let summary = match input.view() {
             View::Complex(any) => with_complex!(any, complex => Summary::of_complex(&complex)),
             View::Tree(any) => with_tree!(any, tree => Summary {

@@ -13,8 +13,26 @@ pub(super) enum Input {
     Loaded(Loaded),
 }
 
-impl Input {
+/// How a file is opened.
+#[derive(clap::Args)]
+pub(super) struct How {
+    /// Load the file into memory instead of mapping it: for one that another program may truncate or write into
+    #[arg(long)]
+    load: bool,
+}
+
+impl How {
     /// Opens `path`, which will be read as `access` says; `-` is standard input.
+    pub(super) fn open(&self, path: &Path, access: Access) -> Result<Input, OpenError> {
+        if self.load && path.as_os_str() != "-" {
+            return Loaded::open(path).map(Input::Loaded);
+        }
+        Input::open(path, access)
+    }
+}
+
+impl Input {
+    /// Opens `path`, mapped if it can be, which will be read as `access` says; `-` is standard input.
     pub(super) fn open(path: &Path, access: Access) -> Result<Self, OpenError> {
         if path.as_os_str() == "-" {
             return Loaded::read(io::stdin().lock(), Path::new("<stdin>"), 0).map(Self::Loaded);

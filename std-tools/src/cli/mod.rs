@@ -169,9 +169,11 @@ pub(crate) fn main() -> ExitCode {
 /// Has the signals that end a process remove the temporary first; the exit code is 128 and the number of the signal. One
 /// that is ignored, as `nohup` and shells arrange it, stays ignored.
 fn handle_signals() -> io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU};
+    #[cfg(unix)]
+    write_errors_instead_of_signals()?;
     let ignored = ignored_signals();
-    let handled = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let handled = [SIGHUP, SIGINT, SIGTERM, SIGXCPU].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
     let mut signals = signal_hook::iterator::Signals::new(handled)?;
     std::thread::spawn(move || {
         for signal in signals.forever() {
@@ -181,6 +183,13 @@ fn handle_signals() -> io::Result<()> {
         }
     });
     Ok(())
+}
+
+/// Past the limit of a file's size (`ulimit -f`) a write is to fail with an error that can be told, not to end the process.
+#[cfg(unix)]
+fn write_errors_instead_of_signals() -> io::Result<()> {
+    // A handler that does nothing of use: the signal is taken, and `write` says EFBIG.
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default()).map(|_| ())
 }
 
 /// The signals that this process was started to ignore, a bit each; none where the system does not tell.

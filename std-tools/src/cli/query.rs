@@ -12,7 +12,7 @@ use sig_tools::names::{FindError, find_simplex, simplex_labels, simplex_name};
 use sig_tools::store::Access;
 use sig_tools::{OwnedScratch, View, with_view};
 
-use super::input::Input;
+use super::input::How;
 use super::{UsageError, output};
 
 /// Print a relation of a simplex: its boundary, star, link, …
@@ -35,6 +35,9 @@ Examples:
 pub(super) struct Args {
     /// The file; `-` is standard input
     file: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     /// The relation
     relation: Relation,
@@ -90,7 +93,7 @@ impl Args {
             let message = format!("'{}' is no simplex: give the labels of its vertices, as in 0,17", self.simplex);
             return Err(UsageError(message).into());
         }
-        let input = Input::open(&self.file, Access::Random)?;
+        let input = self.how.open(&self.file, Access::Random)?;
         match (input.view(), self.relation) {
             (View::Complex(any), Relation::Clusters) => {
                 with_complex!(any, complex => self.answer_clusters(&complex, &labels))

@@ -14,6 +14,7 @@ use sig_tools::mcc::{
 use sig_tools::soup::Coordinates;
 use sig_tools::with_view;
 
+use super::input::How;
 use super::output::{self, Content, Target, grouped};
 use super::tree_input::{self, Opened};
 use super::{Threads, UsageError, interrupt, progress};
@@ -34,6 +35,9 @@ pub(super) struct Args {
     /// A complex in a file of this program, or a cell complex in text; `-` is standard input
     #[arg(value_name = "IN")]
     input: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     #[command(flatten)]
     target: Target,
@@ -126,7 +130,7 @@ impl Args {
             return Err(UsageError("--max-error wants a number".to_owned()).into());
         }
         self.threads.start()?;
-        let input = progress::during("reading", || read(&self.input))?;
+        let input = progress::during("reading", || read(&self.input, &self.how))?;
         let input_cells = input.complex.counts().to_vec();
         let name = tree_input::displayed(&self.input);
         output::log(format_args!("read   {name}: {}", counted(&input_cells)));
@@ -197,8 +201,8 @@ impl Args {
     }
 }
 
-fn read(path: &Path) -> anyhow::Result<Input> {
-    match tree_input::open(path)? {
+fn read(path: &Path, how: &How) -> anyhow::Result<Input> {
+    match tree_input::open(path, how)? {
         Opened::Ours(input) => with_view!(input.view(), complex => {
             complex.validate().with_context(|| format!("{}: damaged; see sig verify", path.display()))?;
             #[expect(clippy::cast_possible_truncation, reason = "costs are single precision")]

@@ -14,7 +14,7 @@ use sig_tools::store::Access;
 use sig_tools::with_view;
 
 use super::frozen_output::{self, FrozenTarget};
-use super::input::Input;
+use super::input::How;
 use super::tree_input::{self, Opened};
 use super::{UsageError, output};
 
@@ -45,6 +45,9 @@ enum Command {
         /// The file; `-` is standard input
         file: PathBuf,
 
+        #[command(flatten)]
+        how: How,
+
         /// Only those of one dimension
         #[arg(long, value_name = "P", conflicts_with = "order")]
         dim: Option<Dim>,
@@ -67,6 +70,9 @@ enum Command {
         file: PathBuf,
 
         #[command(flatten)]
+        how: How,
+
+        #[command(flatten)]
         target: FrozenTarget,
 
         /// Print a JSON object on what was written
@@ -79,6 +85,9 @@ enum Command {
         file: PathBuf,
 
         #[command(flatten)]
+        how: How,
+
+        #[command(flatten)]
         target: output::Target,
     },
 }
@@ -87,6 +96,9 @@ enum Command {
 struct OfSimplex {
     /// The file; `-` is standard input
     file: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     /// The simplex: the labels of its vertices, separated by commas, in any order
     #[arg(allow_hyphen_values = true)]
@@ -119,32 +131,32 @@ struct Word {
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         match self.command {
-            Command::Words { file, dim, order, json } => {
-                let input = Input::open(&file, Access::Sequential)?;
+            Command::Words { file, how, dim, order, json } => {
+                let input = how.open(&file, Access::Sequential)?;
                 Ok(with_view!(input.view(), complex => words(&complex, dim, order, json))?)
             }
             Command::Children(of) => {
-                let input = Input::open(&of.file, Access::Random)?;
+                let input = of.how.open(&of.file, Access::Random)?;
                 with_view!(input.view(), complex => of.children(&complex))
             }
             Command::Prefix(of) => {
-                let input = Input::open(&of.file, Access::Random)?;
+                let input = of.how.open(&of.file, Access::Random)?;
                 with_view!(input.view(), complex => of.prefix(&complex))
             }
-            Command::Convert { file, target, json } => {
+            Command::Convert { file, how, target, json } => {
                 target.check(std::slice::from_ref(&file), json)?;
-                let written = frozen_output::write(frozen(&file)?, &target, None)?;
+                let written = frozen_output::write(frozen(&file, &how)?, &target, None)?;
                 written.log();
                 Ok(if json { output::json(&written) } else { Ok(()) }?)
             }
-            Command::Text { file, target } => super::export::export(&file, &target, Format::Gudhi),
+            Command::Text { file, how, target } => super::export::export(&file, &how, &target, Format::Gudhi),
         }
     }
 }
 
 /// The complex in a file, which is right, or in GUDHI's text.
-fn frozen(file: &Path) -> anyhow::Result<FrozenTree> {
-    let input = match tree_input::open(file)? {
+fn frozen(file: &Path, how: &How) -> anyhow::Result<FrozenTree> {
+    let input = match tree_input::open(file, how)? {
         Opened::Ours(input) => input,
         Opened::Other(reader, length) => return Ok(tree_input::read_text(reader, file, length)?.freeze()),
     };

@@ -10,7 +10,7 @@ use sig_tools::simplex_tree::{SimplexTree, Vertices};
 use sig_tools::store::Access;
 use sig_tools::{Loaded, with_view};
 
-use super::input::Input;
+use super::input::{How, Input};
 use super::{output, progress};
 
 /// An input, by what its first bytes say.
@@ -22,7 +22,7 @@ pub(super) enum Opened {
 }
 
 /// Opens a file, or standard input if the path is `-`.
-pub(super) fn open(path: &Path) -> anyhow::Result<Opened> {
+pub(super) fn open(path: &Path, how: &How) -> anyhow::Result<Opened> {
     let name = || displayed(path);
     let is_file = std::fs::metadata(path).is_ok_and(|metadata| metadata.is_file()) && !output::is_stdout(path);
     let mut reader: Box<dyn Read> = if output::is_stdout(path) {
@@ -34,7 +34,7 @@ pub(super) fn open(path: &Path) -> anyhow::Result<Opened> {
     let ours = is_ours(&head);
     let reader = Cursor::new(head).chain(reader);
     Ok(if ours && is_file {
-        Opened::Ours(Input::open(path, Access::Sequential)?)
+        Opened::Ours(how.open(path, Access::Sequential)?)
     } else if ours {
         // What is no file cannot be read twice.
         Opened::Ours(Input::Loaded(Loaded::read(reader, Path::new(&name()), 0)?))
@@ -50,8 +50,8 @@ pub(super) fn displayed(path: &Path) -> String {
 }
 
 /// Reads the complex at `path`, `-` being standard input, and what is known of its vertices.
-pub(super) fn read(path: &Path) -> anyhow::Result<(SimplexTree, Vertices)> {
-    match open(path)? {
+pub(super) fn read(path: &Path, how: &How) -> anyhow::Result<(SimplexTree, Vertices)> {
+    match open(path, how)? {
         Opened::Ours(input) => progress::during("thawing", || thaw(&input, &displayed(path))),
         Opened::Other(reader, length) => Ok((read_text(reader, path, length)?, Vertices::of_labels())),
     }

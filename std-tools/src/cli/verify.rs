@@ -10,7 +10,7 @@ use sig_tools::build::BuildOptions;
 use sig_tools::store::{Access, verify};
 use sig_tools::{View, with_view};
 
-use super::input::Input;
+use super::input::How;
 use super::{Silent, output, progress};
 
 /// Check a file: header, structure, checksums, canonical order, and the relations
@@ -24,6 +24,9 @@ Examples:
 pub(super) struct Args {
     /// The file; `-` is standard input
     file: PathBuf,
+
+    #[command(flatten)]
+    how: How,
 
     /// Also build the complex again from its top simplices and compare all relations
     #[arg(long)]
@@ -79,7 +82,7 @@ impl Args {
 
     /// Runs the checks up to the first that fails.
     fn check(&self, tell: &mut dyn FnMut(Check) -> io::Result<()>) -> io::Result<()> {
-        let input = match Input::open(&self.file, Access::Sequential) {
+        let input = match self.how.open(&self.file, Access::Sequential) {
             Ok(input) => input,
             Err(error) => return tell(Check::new("structure", Err(error.kind.to_string()))),
         };

@@ -1,9 +1,16 @@
 //! Files that are there whole or not at all.
 //!
-//! A file is written under a temporary name in the directory where it belongs, brought to disk, and renamed; the
+//! A file is written without its name in the directory where it belongs, brought to disk, and given its name; the
 //! directory is brought to disk after that. Whatever ends the work before (a full disk, an error, a signal), the old file
-//! is untouched and the temporary is removed.
+//! is untouched and nothing else is left.
+//!
+//! Where the system has files without a name (Linux, on most of its file systems), not even `kill -9` or a loss of power
+//! leaves anything, but for the instant in which a whole new file takes the place of an old one. Elsewhere the file has
+//! a temporary name meanwhile, `.NAME.XXXXXX.tmp` for a file called NAME. What the program can catch removes it
+//! ([`abort`]); what it cannot, `kill -9` above all, leaves it behind. It is never read and may be deleted when no
+//! program is writing.
 
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -105,15 +112,14 @@ pub fn write(
     let resolved = fs::canonicalize(path).ok().filter(|_| path.is_symlink());
     let path = resolved.as_deref().unwrap_or(path);
     let failed = |error| WriteError::Write { path: path.to_owned(), error };
-    let mut temporary = Temporary::create(path)?;
-    let file = temporary.file.as_file_mut();
-    let mut out = BufWriter::with_capacity(1 << 16, file);
+    let temporary = Temporary::create(path)?;
+    let mut out = BufWriter::with_capacity(1 << 16, temporary.file());
     fill(&mut out).and_then(|()| out.flush()).map_err(failed)?;
     drop(out);
     if let Ok(replaced) = fs::metadata(path) {
-        temporary.file.as_file().set_permissions(replaced.permissions()).map_err(failed)?;
+        temporary.file().set_permissions(replaced.permissions()).map_err(failed)?;
     }
-    temporary.file.as_file().sync_all().map_err(failed)?;
+    temporary.file().sync_all().map_err(failed)?;
     temporary.persist(path, existing)?;
     sync_directory(directory_of(path)).map_err(|error| WriteError::Sync { path: path.to_owned(), error })
 }
@@ -138,11 +144,17 @@ pub fn abort(exit_code: i32) -> ! {
     std::process::exit(exit_code)
 }
 
-/// A temporary that [`abort`] knows of.
-struct Temporary {
-    file: NamedTempFile,
-    /// After the file: it is removed before it is forgotten.
-    _registered: Registered,
+/// A file that does not have its name yet.
+enum Temporary {
+    /// It has none; the system removes it unless it gets one.
+    #[cfg(target_os = "linux")]
+    Unnamed(File),
+    /// It has another, which [`abort`] knows.
+    Named {
+        file: NamedTempFile,
+        /// After the file: it is removed before it is forgotten.
+        registered: Registered,
+    },
 }
 
 /// A name in the list of temporaries, as long as this lives.
@@ -157,11 +169,13 @@ impl Drop for Registered {
 impl Temporary {
     fn create(path: &Path) -> Result<Self, WriteError> {
         let directory = directory_of(path);
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(path.file_name().unwrap_or_default());
-        prefix.push(".");
+        #[cfg(target_os = "linux")]
+        if let Ok(file) = unnamed::create(directory) {
+            return Ok(Self::Unnamed(file));
+        }
+        let prefix = prefix(path);
         let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(".tmp");
+        builder.prefix(&prefix).suffix(SUFFIX);
         // A temporary is private by default; this one will be the file, and is given the permissions of any new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
@@ -173,27 +187,91 @@ impl Temporary {
         })?;
         temporaries.push(file.path().to_owned());
         drop(temporaries);
-        let _registered = Registered(file.path().to_owned());
-        Ok(Self { file, _registered })
+        let registered = Registered(file.path().to_owned());
+        Ok(Self::Named { file, registered })
+    }
+
+    fn file(&self) -> &File {
+        match self {
+            #[cfg(target_os = "linux")]
+            Self::Unnamed(file) => file,
+            Self::Named { file, .. } => file.as_file(),
+        }
     }
 
     fn persist(self, path: &Path, existing: Existing) -> Result<(), WriteError> {
-        let Self { file, _registered } = self;
-        let persisted = {
-            // So that no signal ends the process between the two halves of a rename.
-            let _guard = temporaries();
-            match existing {
-                Existing::Refuse => file.persist_noclobber(path),
-                Existing::Replace => file.persist(path),
-            }
+        // So that no signal ends the process between the two halves of a rename.
+        let guard = temporaries();
+        let persisted = match &self {
+            #[cfg(target_os = "linux")]
+            Self::Unnamed(file) => unnamed::persist(file, path, existing),
+            Self::Named { .. } => Ok(()),
         };
-        match persisted {
-            Ok(_) => Ok(()),
-            Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => {
-                Err(WriteError::Exists { path: path.to_owned() })
+        let (persisted, registered) = match self {
+            Self::Named { file, registered } => {
+                let persisted = match existing {
+                    Existing::Refuse => file.persist_noclobber(path),
+                    Existing::Replace => file.persist(path),
+                };
+                (persisted.map(drop).map_err(|failed| failed.error), Some(registered))
             }
-            Err(failed) => Err(WriteError::Write { path: path.to_owned(), error: failed.error }),
+            #[cfg(target_os = "linux")]
+            Self::Unnamed(_) => (persisted, None),
+        };
+        // Forgetting a name takes the lock.
+        drop(guard);
+        drop(registered);
+        persisted.map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => WriteError::Exists { path: path.to_owned() },
+            _ => WriteError::Write { path: path.to_owned(), error },
+        })
+    }
+}
+
+/// How the names of temporaries end.
+const SUFFIX: &str = ".tmp";
+
+/// How the temporary names of a file called `path` begin.
+fn prefix(path: &Path) -> OsString {
+    let mut prefix = OsString::from(".");
+    prefix.push(path.file_name().unwrap_or_default());
+    prefix.push(".");
+    prefix
+}
+
+/// Files without a name, as Linux has them.
+#[cfg(target_os = "linux")]
+mod unnamed {
+    use std::os::fd::AsRawFd;
+
+    use rustix::fs::{AtFlags, CWD, Mode, OFlags, linkat, open};
+
+    use super::{Existing, File, Path, SUFFIX, io, prefix};
+
+    /// Creates one in `directory`, with the permissions of any new file, if that can be given a name later.
+    pub(super) fn create(directory: &Path) -> io::Result<File> {
+        let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
+        let file = File::from(open(directory, flags, Mode::from_raw_mode(0o666))?);
+        // Where /proc is not mounted, it cannot.
+        std::fs::symlink_metadata(place(&file))?;
+        Ok(file)
+    }
+
+    /// Gives it a name. One that is taken cannot be replaced at once: the file gets a temporary one, and is renamed.
+    pub(super) fn persist(file: &File, path: &Path, existing: Existing) -> io::Result<()> {
+        let link = |name: &Path| linkat(CWD, place(file), CWD, name, AtFlags::SYMLINK_FOLLOW).map_err(io::Error::from);
+        match link(path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && existing == Existing::Replace => {
+                let mut builder = tempfile::Builder::new();
+                let named = builder.prefix(&prefix(path)).suffix(SUFFIX).make_in(super::directory_of(path), link)?;
+                named.persist(path).map(drop).map_err(|failed| failed.error)
+            }
+            linked => linked,
         }
+    }
+
+    fn place(file: &File) -> String {
+        format!("/proc/self/fd/{}", file.as_raw_fd())
     }
 }
 

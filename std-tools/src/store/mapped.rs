@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use memmap2::Mmap;
 use sig_core::AnyComplex;
-use sig_core::format::{FormatError, swap_byte_order};
+use sig_core::format::{Blocks, FormatError, SectionKind, crc32, swap_byte_order};
 
 use super::{AlignedBytes, View};
 use crate::with_view;
@@ -55,12 +55,28 @@ impl OpenError {
     }
 }
 
+/// Opens the complex in bytes in the host's byte order.
+///
+/// The lengths that the section table must have follow from the lookup section, so damage there looks like damage of the
+/// table. Where the file has checksums, they tell which of the two it is.
+fn open_view(bytes: &[u8]) -> Result<View<'_>, FormatError> {
+    View::from_bytes(bytes).map_err(|error| {
+        let blocks = || Blocks::of_file(bytes).ok()?.iter().find(|block| block.section == SectionKind::Lookup);
+        match error {
+            FormatError::Table { .. } | FormatError::Invalid { .. } => {
+                blocks().and_then(|block| block.check(crc32).err()).unwrap_or(error)
+            }
+            _ => error,
+        }
+    })
+}
+
 /// Checks that bytes in the host's byte order are a complex.
 fn check(path: &Path, bytes: &[u8]) -> Result<(), OpenError> {
     if bytes.is_empty() {
         return Err(OpenError::new(path, OpenErrorKind::Empty));
     }
-    let checked = View::from_bytes(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
+    let checked = open_view(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
     // Vertices alone take no bytes, so a small file may promise more of them than any memory has marks for.
     let simplices = with_view!(checked, complex => complex.num_simplices());
     if simplices as u64 >> 36 != 0 && simplices / 64 > bytes.len() {
@@ -115,6 +131,10 @@ pub struct Mapped {
 
 impl Mapped {
     /// Maps the file at `path` and opens the complex in it, a SIG or a tree, as [`View::from_bytes`] does.
+    ///
+    /// If another program truncates the file while it is mapped, touching what is gone ends this process with `SIGBUS`;
+    /// no error can be returned. [`Loaded::open`] is safe from that: it reads the file once and never looks at it again.
+    /// On the command line, that is `--load`.
     ///
     /// Cost: O(number of sections), the same for any number of simplices.
     ///
@@ -212,7 +232,7 @@ impl Loaded {
         if cfg!(target_endian = "big") {
             swap_byte_order(&mut bytes)?;
         }
-        View::from_bytes(&bytes)?;
+        open_view(&bytes)?;
         Ok(Self { bytes })
     }
 
