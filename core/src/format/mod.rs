@@ -21,7 +21,7 @@ pub use encode::{EncodeError, Encoder};
 pub use error::{FormatError, Rule, TableError};
 pub use header::{Header, Kind};
 pub use section::{Column, Section, SectionKind};
-pub(crate) use section::{first_from, num_up_to};
+pub(crate) use section::{WAITS, first_from, num_up_to};
 pub use wire::swap_byte_order;
 
 /// The first eight bytes of every file.

@@ -324,6 +324,9 @@ impl<'a> Column<'a> {
 /// waits for the indices; halving takes the guess from it, for there each step needs the one before.
 const SHORT: usize = 16;
 
+/// Whether memory is far away, so that reading ahead is worth its code: not on machines of 32 bits, which are small.
+pub(crate) const WAITS: bool = cfg!(not(target_pointer_width = "32"));
+
 /// Into how many parts a step of a search in many indices divides them.
 const PARTS: usize = 16;
 
@@ -339,6 +342,9 @@ fn num_below<I: Index>(column: &[I], range: &Range<usize>, value: usize) -> usiz
 /// A step reads an index of each of [`PARTS`] parts, for the memory delivers them together, where halving waits for one
 /// after the other.
 pub(crate) fn num_up_to<I: Index>(indices: &[I], value: usize) -> usize {
+    if !WAITS {
+        return indices.partition_point(|index| index.to_usize() <= value);
+    }
     let (mut before, mut rest) = (0, indices);
     while rest.len() > PARTS {
         let step = rest.len() / PARTS;

@@ -13,7 +13,7 @@ use core::ops::Range;
 
 use super::neighbours::{Filter, MANY};
 use super::{Path, Tree};
-use crate::format::{Column, first_from};
+use crate::format::{Column, WAITS, first_from};
 use crate::id::{Dim, Index, IndexWidth, SimplexId};
 use crate::relations::Simplices;
 use crate::scratch::{Found, Queue, Scratch, ScratchError};
@@ -303,7 +303,7 @@ impl<I: Index> Tree<'_, I> {
     /// Reads the first of what will be read of some children, so that the memory delivers it before it is waited for.
     #[inline]
     fn fetch_children<L: Index>(&self, labels: &[L], children: &Range<usize>) {
-        if !children.is_empty() {
+        if WAITS && !children.is_empty() {
             self.fetch_offset(children.start);
             core::hint::black_box(labels.get(children.start).copied());
         }

@@ -27,7 +27,7 @@ use core::ops::Range;
 use heapless::Vec;
 
 use crate::complex::{Levels, Sections, SimplexRange};
-use crate::format::{Column, Container, FormatError, Kind, SectionKind, num_up_to};
+use crate::format::{Column, Container, FormatError, Kind, SectionKind, WAITS, num_up_to};
 use crate::id::{Dim, Index, MAX_DIM, SimplexId, VertexId};
 use crate::slices;
 use crate::view::{common_methods, find_word};
@@ -219,7 +219,9 @@ impl<'a, I: Index> Tree<'a, I> {
     /// memory has the time to deliver it.
     #[inline]
     fn fetch_offset(&self, node: usize) {
-        core::hint::black_box(self.child_offsets.get(node).copied());
+        if WAITS {
+            core::hint::black_box(self.child_offsets.get(node).copied());
+        }
     }
 
     /// The child that ends with `label` of a node of `depth` vertices; the root has none, whatever its number.
