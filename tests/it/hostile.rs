@@ -74,7 +74,7 @@ fn damaged_arrays() {
     let originals = small_files();
     let (mut opened, mut mutants) = (0, 0);
     for seed in SEED..SEED + 4000 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let mut bytes = originals[random.below(originals.len())].clone();
         for _ in 0..=random.below(4) {
             bytes = Damage::Element.applied(&bytes, &mut random);
@@ -114,7 +114,7 @@ fn damaged_headers_and_tables() {
     let originals = small_files();
     let mut opened = 0;
     for seed in SEED..SEED + 6000 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let mut bytes = originals[random.below(originals.len())].clone();
         for _ in 0..=random.below(2) {
             bytes = Damage::Field.applied(&bytes, &mut random);

@@ -6,6 +6,7 @@ use std::ops::Range;
 use sig_core::format::{Column, Container, ENTRY_BYTES, Encoder, HEADER_BYTES, Section, SectionKind};
 use sig_core::{IndexWidth, with_complex, with_tree};
 use sig_tools::View;
+use sig_tools::generate::SplitMix64;
 use sig_tools::store::AlignedBytes;
 
 use crate::encode::{Options, encode, encode_tree};
@@ -13,17 +14,19 @@ use crate::known;
 use crate::oracle::{Oracle, Word};
 use crate::queries::{ask_everything, ask_tree, reseal};
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the same mutant for the same seed, on every host.
+/// Random numbers: the same mutant for the same seed, on every host.
 #[derive(Clone, Debug)]
-pub struct Random(pub u64);
+pub struct Random(SplitMix64);
 
 impl Random {
+    /// The generator whose state starts at `seed`.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self(SplitMix64::new(seed))
+    }
+
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ mixed >> 31
+        self.0.next_u64()
     }
 
     /// A number below `bound`; 0 if that is 0.
@@ -325,7 +328,7 @@ fn view_is_long(view: View<'_>, bytes: usize) -> bool {
 /// If there are no files.
 #[must_use]
 pub fn mutant(files: &[AlignedBytes], number: u64) -> (Damage, AlignedBytes) {
-    let mut random = Random(number);
+    let mut random = Random::new(number);
     let mut bytes = random.of(files).expect("some file");
     let damage = Damage::ALL[random.below(Damage::ALL.len())];
     for _ in 0..=random.below(4) {

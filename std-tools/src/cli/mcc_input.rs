@@ -5,15 +5,16 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::Context;
-use sig_core::format::MAGIC;
+use sig_core::format::{Kind, MAGIC};
 use sig_tools::mcc::MccFile;
 
 /// Whether a file is of one of these kinds, by its first bytes; not if it cannot be read.
 pub(super) fn is_one(path: &Path) -> bool {
     let mut head = Vec::new();
     let is_read = File::open(path).is_ok_and(|file| file.take(17).read_to_end(&mut head).is_ok());
-    // Kinds 3 and 4 of the format.
-    is_read && head.starts_with(&MAGIC) && matches!(head.get(16), Some(3 | 4))
+    // The kind stands behind the magic number and the version.
+    let is_kind = |kind: Kind| head.get(16) == Some(&(kind as u8));
+    is_read && head.starts_with(&MAGIC) && (is_kind(Kind::CellComplex) || is_kind(Kind::MultiResolution))
 }
 
 /// Opens a file and checks all of it, so that its refinements can be applied.
