@@ -53,6 +53,11 @@ fn read_of_each_format() {
 }
 
 #[test]
+fn read_named() {
+    replay("read_named", fuzz::read_named);
+}
+
+#[test]
 fn space() {
     replay("space", |bytes| fuzz::space(None, bytes));
 }

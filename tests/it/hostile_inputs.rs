@@ -43,6 +43,7 @@ fn lines_of_a_gigabyte() {
             (Format::Ply, b"ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nend_header\n"),
             (Format::Stl, b"solid a\n"),
             (Format::Msh, b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n"),
+            (Format::Tops, b"2 1\n0 0\n"),
             (Format::SimplexList, b"1 2\n"),
         ] {
             let mut input = Generated { head, pattern, given: 0, length: GIGABYTE };
@@ -74,13 +75,19 @@ fn lines_of_a_gigabyte() {
 fn truncated_at_every_byte() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus");
     let mut tried = 0;
-    for target in ["read_off", "read_obj", "read_ply", "read_stl", "read_msh", "read_simplices", "space"] {
+    for target in ["read_off", "read_obj", "read_ply", "read_stl", "read_msh", "read_simplices", "read_named", "space"]
+    {
         for entry in fs::read_dir(corpus.join(target)).unwrap() {
             let path = entry.unwrap().path();
             let bytes = fs::read(&path).unwrap();
             for end in 0..=bytes.len() {
                 let error = if target == "space" {
                     read_space_bytes(&bytes[..end], "input", &SpaceOptions::default()).err()
+                } else if target == "read_named" {
+                    let format = bytes[..end].split(|&byte| byte == b'\n').next();
+                    let format = format.and_then(|name| Format::from_name(std::str::from_utf8(name).ok()?));
+                    let start = bytes.iter().position(|&byte| byte == b'\n').map_or(end, |at| end.min(at + 1));
+                    read_bytes(&bytes[start..end], "input", &ReadOptions { format, ..ReadOptions::default() }).err()
                 } else {
                     read_bytes(&bytes[..end], "input", &ReadOptions::default()).err()
                 };

@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 use sig_core::{Index, IndexWidth, SimplexId};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
-use sig_tools::io::{self as readers, Format, MergeReport, ReadOptions, ReadReport};
+use sig_tools::io::{self as readers, Compression, Format, MergeReport, ReadOptions, ReadReport};
 use sig_tools::names::simplex_name;
 use sig_tools::soup::Soup;
 use sig_tools::store::{EncodeError, EncodeOptions, Encoding};
@@ -20,8 +20,8 @@ use super::{Threads, progress};
 
 /// Build a complex from meshes or lists of simplices
 ///
-/// Reads OFF, OBJ, PLY, STL, Gmsh MSH and lists of simplices by labels, also compressed with gzip. Lists that use the
-/// same labels speak of the same vertices; meshes are put beside each other. Polygons are split into triangles.
+/// Reads OFF, OBJ, PLY, STL, Gmsh MSH, lists of simplices by labels and more (see --format), also compressed with gzip,
+/// xz or zstd. Lists that use the same labels speak of the same vertices; meshes are put beside each other. Polygons are split into triangles.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -211,7 +211,7 @@ struct Report {
 struct Input {
     file: String,
     format: &'static str,
-    gzip: bool,
+    compression: Option<&'static str>,
     vertices: usize,
     simplices: Vec<usize>,
     polygons: usize,
@@ -236,7 +236,7 @@ impl Input {
         Self {
             file: if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() },
             format: report.format.name(),
-            gzip: report.gzip,
+            compression: report.compression.map(Compression::name),
             vertices: report.vertices,
             simplices: report.simplices,
             polygons: report.polygons,
@@ -252,10 +252,10 @@ impl Input {
 
     fn log(&self) {
         let listed: usize = self.simplices.iter().sum();
-        let gzip = if self.gzip { ", gzip" } else { "" };
+        let packed = self.compression.map_or(String::new(), |name| format!(", {name}"));
         let (vertices, listed) = (grouped(self.vertices), grouped(listed));
         output::log(format_args!(
-            "read   {}: {}{gzip}, {vertices} vertices, {listed} simplices",
+            "read   {}: {}{packed}, {vertices} vertices, {listed} simplices",
             self.file, self.format
         ));
         let split = format!("polygons and polyhedra, split into {} simplices", grouped(self.split_into));

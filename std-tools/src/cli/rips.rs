@@ -9,6 +9,7 @@ use clap::builder::RangedU64ValueParser;
 use serde::Serialize;
 use sig_tools::distances::Distances;
 use sig_tools::graph::Graph;
+use sig_tools::io::Compression;
 use sig_tools::io::space::{self, Space, SpaceFormat, SpaceOptions, SpaceReport};
 use sig_tools::points::{Metric, Points};
 use sig_tools::proximity::{RadiusOptions, radius_graph};
@@ -216,7 +217,7 @@ fn numbers(rows: &[usize]) -> Labels {
 struct Report {
     input: String,
     format: &'static str,
-    gzip: bool,
+    compression: Option<&'static str>,
     points: usize,
     /// The dimension of points.
     coordinates: Option<usize>,
@@ -245,7 +246,7 @@ impl Report {
         Self {
             input: tree_input::displayed(&args.input),
             format: read.format.name(),
-            gzip: read.gzip,
+            compression: read.compression.map(Compression::name),
             points,
             coordinates,
             metric: coordinates.map(|_| metric),
@@ -263,10 +264,10 @@ impl Report {
     }
 
     fn log(&self) {
-        let gzip = if self.gzip { ", gzip" } else { "" };
+        let packed = self.compression.map_or(String::new(), |name| format!(", {name}"));
         let space = self.coordinates.map_or(String::new(), |dim| format!(" in R^{dim}"));
         let points = grouped(self.points);
-        output::log(format_args!("read   {}: {}{gzip}, {points} points{space}", self.input, self.format));
+        output::log(format_args!("read   {}: {}{packed}, {points} points{space}", self.input, self.format));
         if self.repeated_edges > 0 {
             output::log(format_args!("       {} edges repeat another", grouped(self.repeated_edges)));
         }

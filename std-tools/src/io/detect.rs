@@ -1,8 +1,9 @@
 //! The format of an input: by what its first bytes say for certain, then by its name, then by what they suggest.
 
+use super::compression::without_suffix;
 use super::error::{ErrorKind, Fault, Position};
 use super::source::Source;
-use super::{Format, gudhi, obj, off, simplex_list, stl};
+use super::{Format, gudhi, obj, off, simplex_list, stl, tetbin};
 
 /// The format of an input called `name`.
 pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Fault> {
@@ -16,9 +17,7 @@ pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Faul
         .or_else(|| suggested(head));
     // `.txt` says no more than that it is text.
     let may_be_gudhi = match format {
-        Some(Format::SimplexList) => {
-            by_name.is_none() || name.to_ascii_lowercase().trim_end_matches(".gz").ends_with(".txt")
-        }
+        Some(Format::SimplexList) => by_name.is_none() || without_suffix(&name.to_ascii_lowercase()).ends_with(".txt"),
         Some(_) => false,
         None => true,
     };
@@ -40,16 +39,12 @@ pub(super) fn refuse_complexes(head: &[u8]) -> Result<(), Fault> {
     Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())))
 }
 
-/// The format that the extension of a name stands for, that of a compressed file being the one before `.gz`.
+/// The format that the extension of a name stands for, that of a compressed file being the one before `.gz` and the like.
 pub(super) fn by_name(name: &str) -> Option<Format> {
-    let name = name.get(..name.len().saturating_sub(3)).filter(|_| has_gz(name)).unwrap_or(name);
+    let name = without_suffix(name);
     let (stem, extension) = name.rsplit_once('.')?;
     // A dot may also stand in a directory, or begin the name.
     if stem.is_empty() { None } else { Format::from_name(extension) }
-}
-
-fn has_gz(name: &str) -> bool {
-    name.len() > 3 && name.as_bytes()[name.len() - 3..].eq_ignore_ascii_case(b".gz")
 }
 
 /// The first line that is neither blank nor a comment.
@@ -68,7 +63,9 @@ fn first_word(line: &[u8]) -> &[u8] {
 pub(super) fn certain(head: &[u8], length: Option<u64>) -> Option<Format> {
     let line = first_line(head);
     let word = first_word(line);
-    if word == b"ply" && line == word {
+    if head.starts_with(tetbin::MAGIC) {
+        Some(Format::Tetbin)
+    } else if word == b"ply" && line == word {
         Some(Format::Ply)
     } else if off::is_keyword(word) {
         Some(Format::Off)

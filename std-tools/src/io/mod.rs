@@ -1,16 +1,18 @@
 //! Readers: meshes and lists of simplices as [`Soup`]s, for [`crate::build`] to make complexes of.
 //!
-//! One file a format, one registry: this module picks the reader by content, then by name, or as it is told
+//! One file a format ([`Format`] lists them), one registry: this module picks the reader by content, then by name, or as it is told
 //! ([`ReadOptions::format`]), and puts the name of the input before every error. Readers stream: their memory is
 //! bounded by the vertices and simplices that the input holds, whatever its headers declare and however much text
-//! stands between. Gzip input is decompressed on the way.
+//! stands between. Input compressed by gzip, xz or zstd is decompressed on the way.
 //!
 //! `io` knows files and soups; it knows nothing of complexes.
 
 pub(crate) mod cells;
+mod compression;
 mod cone;
 mod detect;
 mod error;
+mod format;
 pub(crate) mod gudhi;
 mod intake;
 mod labels;
@@ -26,95 +28,24 @@ pub mod space;
 mod stl;
 #[cfg(test)]
 mod tests;
+mod tetbin;
 mod text;
+mod tops;
 
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+pub use compression::Compression;
 pub use error::{ErrorKind, Position, ReadError};
+pub use format::Format;
 pub use merge::{MergeError, MergeReport, Renumbered, merge};
 pub use report::{Ignored, ReadReport};
 
 use crate::soup::Soup;
 use error::Fault;
 use source::Source;
-
-/// A file format that can be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Format {
-    /// Geomview's Object File Format and its variants, in text.
-    Off,
-    /// Wavefront OBJ.
-    Obj,
-    /// Stanford PLY, in text and both binary byte orders.
-    Ply,
-    /// STL, in text and binary.
-    Stl,
-    /// Gmsh's MSH 2.2 and 4.1, in text and binary.
-    Msh,
-    /// One simplex a line, or lists of lists in brackets.
-    SimplexList,
-}
-
-impl Format {
-    /// All formats, in the order in which help texts list them.
-    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Ply, Self::Stl, Self::Msh, Self::SimplexList];
-
-    /// The name of the format on a command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Off => "off",
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-            Self::Stl => "stl",
-            Self::Msh => "msh",
-            Self::SimplexList => "simplices",
-        }
-    }
-
-    /// The extensions of file names that stand for the format, in lower case, without the dot.
-    #[must_use]
-    pub const fn extensions(self) -> &'static [&'static str] {
-        match self {
-            Self::Off => &["off", "coff", "noff", "cnoff"],
-            Self::Obj => &["obj"],
-            Self::Ply => &["ply"],
-            Self::Stl => &["stl", "stla", "stlb"],
-            Self::Msh => &["msh", "msh2", "msh4", "gmsh"],
-            Self::SimplexList => &["simplices", "facets", "lst", "txt"],
-        }
-    }
-
-    /// One line on what the format is.
-    #[must_use]
-    pub const fn description(self) -> &'static str {
-        match self {
-            Self::Off => "Geomview OFF and its variants COFF, NOFF, 4OFF, nOFF, in text",
-            Self::Obj => "Wavefront OBJ: faces, lines and points",
-            Self::Ply => "Stanford PLY, in text or binary: faces, edges and triangle strips",
-            Self::Stl => "STL, in text or binary; corners with equal coordinates are welded",
-            Self::Msh => "Gmsh MSH 2.2 and 4.1, in text or binary, cells of all dimensions",
-            Self::SimplexList => "one simplex a line by its vertex labels, or lists of lists like [[1,2,3],[2,3,4]]",
-        }
-    }
-
-    /// The format with this name or extension, upper and lower case being the same.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        let name = name.to_ascii_lowercase();
-        Self::ALL.iter().copied().find(|format| format.name() == name || format.extensions().contains(&&*name))
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// How to read. Make one by `ReadOptions { format: Some(Format::Off), ..Default::default() }`.
 #[derive(Clone, Copy, Default)]
@@ -200,7 +131,7 @@ fn read_sized(
             None => detect::format(&mut source, name)?,
         };
         let (soup, mut report) = read_as(format, &mut source, options)?;
-        report.gzip = source.gzip;
+        report.compression = source.compression;
         Ok((soup, report))
     };
     run().map_err(|fault: Fault| fault.in_file(displayed(name)))
@@ -214,6 +145,8 @@ fn read_as(format: Format, source: &mut Source<'_>, options: &ReadOptions<'_>) -
         Format::Ply => ply::read(source, options),
         Format::Stl => stl::read(source, options),
         Format::Msh => msh::read(source, options),
+        Format::Tetbin => tetbin::read(source, options),
+        Format::Tops => tops::read(source, options),
         Format::SimplexList => simplex_list::read(source, options),
     }
 }

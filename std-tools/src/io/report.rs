@@ -1,6 +1,6 @@
 //! What a reader has to say about an input that it accepted.
 
-use super::Format;
+use super::{Compression, Format};
 
 /// What was found in an input, and what became of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -8,8 +8,8 @@ use super::Format;
 pub struct ReadReport {
     /// The format in which the input was read.
     pub format: Format,
-    /// Whether the input was compressed with gzip.
-    pub gzip: bool,
+    /// How the input was compressed, if it was.
+    pub compression: Option<Compression>,
     /// The number of vertices.
     pub vertices: usize,
     /// The number of simplices in the soup by dimension, repeated ones included.
@@ -35,7 +35,7 @@ impl ReadReport {
     pub(super) fn new(format: Format) -> Self {
         Self {
             format,
-            gzip: false,
+            compression: None,
             vertices: 0,
             simplices: Vec::new(),
             polygons: 0,

@@ -6,8 +6,7 @@
 use std::borrow::Cow;
 use std::io::{self, Read};
 
-use flate2::read::MultiGzDecoder;
-
+use super::compression::Compression;
 use super::error::{ErrorKind, Fault, Position, excerpt};
 use super::text::{Line, Origin};
 
@@ -52,14 +51,14 @@ pub(super) struct Source<'a> {
     unended: Option<usize>,
     /// The length of the (uncompressed) input, if known beforehand.
     pub(super) length: Option<u64>,
-    /// Whether the input is compressed.
-    pub(super) gzip: bool,
+    /// How the input is compressed, if it is.
+    pub(super) compression: Option<Compression>,
     /// Whether binary data have come, after which lines cannot be counted and places are bytes.
     pub(super) binary: bool,
 }
 
 impl<'a> Source<'a> {
-    /// An input of `length` bytes, if that is known; decompressed if it starts like a gzip file.
+    /// An input of `length` bytes, if that is known; decompressed if it starts like a compressed file.
     pub(super) fn new(
         reader: impl Read + 'a,
         length: Option<u64>,
@@ -67,10 +66,10 @@ impl<'a> Source<'a> {
     ) -> Result<Self, Fault> {
         let raw: Box<dyn Read + 'a> = Box::new(Counted { reader, bytes: 0, progress });
         let mut source = Self::over(raw, length);
-        if source.peek(2)? == [0x1f, 0x8b] {
+        if let Some(compression) = Compression::of(source.peek(Compression::MAGIC)?) {
             let head = io::Cursor::new(source.buffer[source.start..source.end].to_vec());
-            let decoder = MultiGzDecoder::new(head.chain(source.reader));
-            source = Self { gzip: true, ..Self::over(Box::new(decoder), None) };
+            let decoder = compression.decoder(head.chain(source.reader));
+            source = Self { compression: Some(compression), ..Self::over(decoder, None) };
         }
         // A byte order mark is no part of the text: it must not stick to the first word.
         if source.peek(3)? == "\u{feff}".as_bytes() {
@@ -90,7 +89,7 @@ impl<'a> Source<'a> {
             lines: 0,
             unended: None,
             length,
-            gzip: false,
+            compression: None,
             binary: false,
         }
     }
@@ -150,6 +149,29 @@ impl<'a> Source<'a> {
         let taken = self.start..self.start + count;
         self.start = taken.end;
         Ok(&self.buffer[taken])
+    }
+
+    /// Calls `record` with the place and the bytes of each of `count` records of `size` bytes.
+    pub(super) fn each_record(
+        &mut self,
+        count: u64,
+        size: usize,
+        expected: &'static str,
+        mut record: impl FnMut(Position, &[u8]) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        /// Records asked for at a time.
+        const MANY: u64 = 4096;
+        let mut left = count;
+        while left > 0 {
+            // At most as many as are asked for at a time.
+            let now = usize::try_from(left.min(MANY)).unwrap_or(1);
+            let first = self.offset();
+            for (index, bytes) in (0..).zip(self.take(now * size, expected)?.chunks_exact(size)) {
+                record(Position::Byte(first + index * size as u64), bytes)?;
+            }
+            left -= now as u64;
+        }
+        Ok(())
     }
 
     /// Passes over `count` bytes, without keeping them.

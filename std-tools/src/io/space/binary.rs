@@ -17,29 +17,6 @@ pub(super) const PTS_MAGIC: &[u8] = b"PTS1";
 /// The first number of a DIPHA file.
 pub(super) const DIPHA_MAGIC: u64 = 8_067_171_840;
 
-/// Calls `element` with the place and the bytes of each of `count` elements of `size` bytes.
-pub(super) fn each(
-    source: &mut Source<'_>,
-    count: u64,
-    size: usize,
-    expected: &'static str,
-    mut element: impl FnMut(Position, &[u8]) -> Result<(), Fault>,
-) -> Result<(), Fault> {
-    /// Elements asked for at a time.
-    const CHUNK: u64 = 4096;
-    let mut left = count;
-    while left > 0 {
-        // At most the size of a chunk.
-        let now = usize::try_from(left.min(CHUNK)).unwrap_or(1);
-        let first = source.offset();
-        for (index, bytes) in (0..).zip(source.take(now * size, expected)?.chunks_exact(size)) {
-            element(Position::Byte(first + index * size as u64), bytes)?;
-        }
-        left -= now as u64;
-    }
-    Ok(())
-}
-
 fn double(bytes: &[u8]) -> f64 {
     bytes.first_chunk().map_or(f64::NAN, |&bytes| f64::from_le_bytes(bytes))
 }
@@ -73,7 +50,7 @@ pub(super) fn pts(source: &mut Source<'_>) -> Result<Points, Fault> {
         return Err(unexpected(position, format!("a possible number of points of dimension {dim}"), &points));
     };
     let mut coordinates = Vec::with_capacity(reserve(values));
-    each(source, values, 8, "as many coordinates as the header says", |position, bytes| {
+    source.each_record(values, 8, "as many coordinates as the header says", |position, bytes| {
         let value = double(bytes);
         if !value.is_finite() {
             return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
@@ -89,7 +66,7 @@ pub(super) fn pts(source: &mut Source<'_>) -> Result<Points, Fault> {
 pub(super) fn lower(source: &mut Source<'_>) -> Result<Distances, Fault> {
     let mut values = Vec::new();
     while !source.peek(1)?.is_empty() {
-        each(source, 1, 4, "a distance of 4 bytes", |position, bytes| {
+        source.each_record(1, 4, "a distance of 4 bytes", |position, bytes| {
             let value = bytes.first_chunk().map_or(f32::NAN, |&bytes| f32::from_le_bytes(bytes));
             values.push(distance(position, value.into())?);
             Ok(())
@@ -128,7 +105,7 @@ fn full(source: &mut Source<'_>) -> Result<Distances, Fault> {
         return Err(unexpected(position, "a possible number of points", &points));
     };
     let mut matrix = Full::new(len);
-    each(source, entries, 8, "as many entries as the header says", |position, bytes| {
+    source.each_record(entries, 8, "as many entries as the header says", |position, bytes| {
         let value = distance(position, double(bytes))?;
         matrix.push(value).map_err(|expected| unexpected(position, expected, &value))
     })?;
@@ -145,7 +122,7 @@ fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault>
     }
     let mut degrees: Vec<u64> = Vec::with_capacity(reserve(points));
     let mut entries = 0_u64;
-    each(source, points, 8, "the number of entries of each row", |position, bytes| {
+    source.each_record(points, 8, "the number of entries of each row", |position, bytes| {
         let degree = bytes.first_chunk().map_or(0, |&bytes| u64::from_le_bytes(bytes));
         entries =
             entries.checked_add(degree).ok_or_else(|| unexpected(position, "a possible number of entries", &degree))?;
@@ -154,7 +131,7 @@ fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault>
     })?;
     let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(reserve(entries));
     let mut rows = (0..).zip(&degrees).flat_map(|(row, &degree)| (0..degree).map(move |_| row));
-    each(source, entries, 8, "the column of each entry", |position, bytes| {
+    source.each_record(entries, 8, "the column of each entry", |position, bytes| {
         let column = bytes.first_chunk().map_or(0, |&bytes| u64::from_le_bytes(bytes));
         match (rows.next(), u32::try_from(column)) {
             (Some(row), Ok(number)) if column < points => pairs.push((row, number)),
@@ -164,7 +141,7 @@ fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault>
     })?;
     let mut edges = Edges::default();
     let mut each_pair = pairs.iter();
-    each(source, entries, 8, "the distance of each entry", |position, bytes| {
+    source.each_record(entries, 8, "the distance of each entry", |position, bytes| {
         let value = distance(position, double(bytes))?;
         match each_pair.next() {
             Some(&(a, b)) if a != b => edges.push(a, b, value, position),

@@ -1,6 +1,7 @@
 //! The format of an input: by what its first bytes say for certain, then by its name, then by the shape of its rows.
 
 use super::super::Format;
+use super::super::compression::without_suffix;
 use super::super::detect as mesh;
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::gudhi;
@@ -57,7 +58,7 @@ fn by_name(name: &str) -> Option<SpaceFormat> {
         ("pts", SpaceFormat::Points),
     ];
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name).to_ascii_lowercase();
-    let file = file.strip_suffix(".gz").unwrap_or(&file);
+    let file = without_suffix(&file);
     let mut extensions = file.split('.').skip(1);
     let found = |extension| NAMES.iter().find(|(name, _)| *name == extension).map(|&(_, format)| format);
     let by_mesh = || mesh::by_name(file).filter(|&format| format != Format::SimplexList).map(|_| SpaceFormat::Mesh);

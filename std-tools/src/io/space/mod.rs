@@ -1,7 +1,7 @@
 //! Readers of what Rips and witness complexes start from: points, distance matrices, weighted graphs.
 //!
 //! One file a family of formats; this module picks the reader by content, then by name, or as it is told
-//! ([`SpaceOptions::format`]). As with meshes, readers stream, gzip is decompressed on the way, and every error names
+//! ([`SpaceOptions::format`]). As with meshes, readers stream, gzip, xz and zstd are decompressed on the way, and every error names
 //! the input and the place in it. Points at one place are legal, and so are distances that break the triangle
 //! inequality; numbers that are not finite are not.
 
@@ -22,7 +22,7 @@ use std::path::Path;
 
 use super::error::{ErrorKind, Fault, Position, ReadError};
 use super::source::Source;
-use super::{Format, ReadOptions};
+use super::{Compression, Format, ReadOptions};
 use crate::distances::Distances;
 use crate::graph::Graph;
 use crate::points::Points;
@@ -170,8 +170,8 @@ impl fmt::Debug for SpaceOptions<'_> {
 pub struct SpaceReport {
     /// The format in which the input was read.
     pub format: SpaceFormat,
-    /// Whether the input was compressed with gzip.
-    pub gzip: bool,
+    /// How the input was compressed, if it was.
+    pub compression: Option<Compression>,
     /// Edges, or entries off the diagonal, that repeat another with the same weight.
     pub repeated: usize,
 }
@@ -249,7 +249,7 @@ pub fn read_space(
             SpaceFormat::Edges => edges::list(&mut source, &mut repeated)?,
             SpaceFormat::Gudhi => gudhi::read(&mut source)?,
         };
-        Ok((space, SpaceReport { format, gzip: source.gzip, repeated }))
+        Ok((space, SpaceReport { format, compression: source.compression, repeated }))
     };
     run().map_err(|fault: Fault| fault.in_file(super::displayed(name)))
 }

@@ -5,7 +5,6 @@ use npyz::{DType, Endianness, NpyHeader, Order, TypeChar, TypeStr};
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::intake::reserve;
 use super::super::source::Source;
-use super::binary::each;
 use crate::points::Points;
 
 /// What every file begins with.
@@ -62,7 +61,7 @@ pub(super) fn read(source: &mut Source<'_>) -> Result<Points, Fault> {
     let count = rows * columns;
     let dim = usize::try_from(columns).map_err(|_| unsupported("too many columns"))?;
     let mut values = Vec::with_capacity(reserve(count));
-    each(source, count, size, "as many elements as the header says", |position, bytes| {
+    source.each_record(count, size, "as many elements as the header says", |position, bytes| {
         let value = decode(&scalar, bytes).unwrap_or(f64::NAN);
         if !value.is_finite() {
             return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));

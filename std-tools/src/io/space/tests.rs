@@ -5,6 +5,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 
+use super::super::Compression;
 use super::*;
 
 fn read(bytes: &[u8], format: SpaceFormat) -> Result<Space, String> {
@@ -339,7 +340,7 @@ fn compressed_input_is_read_as_it_is() {
     encoder.write_all(b"1,2\n3,4\n").unwrap();
     let (space, report) = read_space_bytes(&encoder.finish().unwrap(), "x.csv.gz", &SpaceOptions::default()).unwrap();
     assert_eq!(space, Space::Points(points_of("1,2\n3,4\n")));
-    assert!(report.gzip);
+    assert_eq!(report.compression, Some(Compression::Gzip));
 }
 
 #[test]

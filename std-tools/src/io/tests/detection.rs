@@ -1,10 +1,11 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use flate2::Compression;
+use flate2::Compression as Level;
 use flate2::write::GzEncoder;
 
-use super::super::{Format, ReadOptions, read, read_bytes};
+use super::super::{Compression, Format, ReadOptions, read, read_bytes};
+use super::tops::tetbin;
 use super::{msh, ply, stl};
 
 fn detected(name: &str, bytes: impl AsRef<[u8]>) -> Option<Format> {
@@ -22,6 +23,7 @@ fn content_that_is_certain_beats_the_name() {
         assert_eq!(detected(name, "nOFF 2 0 0 0\n"), Some(Format::Off));
         assert_eq!(detected(name, ply::TEXT), Some(Format::Ply));
         assert_eq!(detected(name, ply::binary(true)), Some(Format::Ply));
+        assert_eq!(detected(name, tetbin(&[[0., 0., 0.]], &[])), Some(Format::Tetbin));
         assert_eq!(detected(name, msh::TEXT_2), Some(Format::Msh));
         assert_eq!(detected(name, msh::binary_4(8, false)), Some(Format::Msh));
         assert_eq!(detected(name, stl::TEXT), Some(Format::Stl));
@@ -38,6 +40,7 @@ fn the_name_beats_content_that_only_suggests() {
     assert_eq!(detected("x.txt", vertices), Some(Format::Obj));
     assert_eq!(detected("-", "# list\nfacets:=[[1,2],[2,3]];\n"), Some(Format::SimplexList));
     assert_eq!(detected("x.off", "1 0 0\n0 0 0\n"), Some(Format::Off));
+    assert_eq!(detected("x.tops", "1 0\n0 0\n"), Some(Format::Tops));
     assert_eq!(detected("a.b/x.simplices", "1 0 0x\n"), Some(Format::SimplexList));
 }
 
@@ -55,7 +58,7 @@ fn an_unknown_format_is_refused_with_the_list_of_formats() {
     assert_eq!(detected(".obj", "a b c\n"), None);
     let error = read_bytes(b"a b c\n", "-", &ReadOptions::default()).unwrap_err().to_string();
     let expected = "<stdin>: neither the content nor the name tells the format; name it (--format), one of: \
-                    off, obj, ply, stl, msh, simplices";
+                    off, obj, ply, stl, msh, tetbin, tops, simplices";
     assert_eq!(error, expected);
 }
 
@@ -73,7 +76,7 @@ fn names_of_formats() {
 }
 
 fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    let mut encoder = GzEncoder::new(Vec::new(), Level::fast());
     encoder.write_all(bytes).unwrap();
     encoder.finish().unwrap()
 }
@@ -84,12 +87,51 @@ fn gzip_is_decompressed_and_its_name_looked_through() {
     let text = b"1 0 0\n0 0 0\n";
     let bytes = [gzip(&text[..5]), gzip(&text[5..])].concat();
     let (soup, report) = read_bytes(&bytes, "x.off.GZ", &ReadOptions::default()).unwrap();
-    assert!(report.gzip);
+    assert_eq!(report.compression, Some(Compression::Gzip));
     assert_eq!((soup.labels.len(), report.format), (1, Format::Off));
     let binary = gzip(&stl::binary("solid", &[[[0.; 3], [1.; 3], [2.; 3]]]));
     assert_eq!(read_bytes(&binary, "-", &ReadOptions::default()).unwrap().1.format, Format::Stl);
     let error = read_bytes(&bytes[..bytes.len() - 12], "x.off.gz", &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.starts_with("x.off.gz: byte ") && error.contains(": cannot read: "), "{error}");
+}
+
+/// Bytes written in hexadecimal.
+fn hexadecimal(text: &str) -> Vec<u8> {
+    (0..text.len()).step_by(2).map(|at| u8::from_str_radix(&text[at..at + 2], 16).unwrap()).collect()
+}
+
+/// As `xz -9` and `zstd -19` wrote a point in OFF without its keyword.
+const XZ: &str = "fd377a585a000004e6d6b446020021011c00000010cf58cc01000b31203020300a30203020300a00f5b4612d2f3c49a90001240ca618d8d8\
+                  1fb6f37d010000000004595a";
+const ZSTD: &str = "28b52ffd046861000031203020300a30203020300a5d930f2b";
+
+#[test]
+fn xz_and_zstd_are_decompressed_and_their_names_looked_through() {
+    let frame = hexadecimal(ZSTD);
+    // A frame that decoders pass over, after the first; the two lines in two frames.
+    let skipped = [&[0x53, 0x2a, 0x4d, 0x18, 3, 0, 0, 0][..], b"any"].concat();
+    let parts = hexadecimal("28b52ffd200631000031203020300a28b52ffd200631000030203020300a");
+    for (bytes, name, compression) in [
+        (hexadecimal(XZ), "x.off.xz", Compression::Xz),
+        (frame.clone(), "x.off.ZST", Compression::Zstd),
+        ([&frame[..], &skipped].concat(), "x.off.zstd", Compression::Zstd),
+        (parts, "x.off.zst", Compression::Zstd),
+    ] {
+        let (soup, report) = read_bytes(&bytes, name, &ReadOptions::default()).unwrap();
+        assert_eq!((soup.labels.len(), report.format, report.compression), (1, Format::Off, Some(compression)));
+        for end in 6..bytes.len() {
+            let error = read_bytes(&bytes[..end], name, &ReadOptions::default()).err();
+            assert!(error.is_none_or(|error| error.to_string().starts_with(name)));
+        }
+    }
+}
+
+/// A frame of 11 bytes that asks for a window of 2 GiB.
+#[test]
+fn a_window_beyond_the_limit_is_refused() {
+    let bytes = hexadecimal("28b52ffd00a8310000310a");
+    let error = read_bytes(&bytes, "x.zst", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("x.zst: cannot read: ") && error.contains("indow"), "{error}");
 }
 
 #[test]

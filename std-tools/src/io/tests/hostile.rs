@@ -17,6 +17,8 @@ fn samples() -> Vec<(Format, Vec<u8>)> {
         (Format::Ply, ply::TEXT.into()),
         (Format::Msh, msh::TEXT_2.into()),
         (Format::Msh, msh::TEXT_4.into()),
+        (Format::Tops, super::tops::TEXT.into()),
+        (Format::Tetbin, super::tops::tetbin(&[[0.0; 3], [1.0; 3], [2.0; 3], [-1.5; 3]], &[[0, 1, 2, 3]])),
     ];
     for big_endian in [false, true] {
         samples.push((Format::Ply, ply::binary(big_endian)));
@@ -92,6 +94,8 @@ fn counts_are_not_trusted() {
     for (format, text) in [
         (Format::Off, format!("OFF {huge} {huge} 0\n0 0 0\n")),
         (Format::Off, "OFF 1 9000000000000 0\n0 0 0\n1 0\n".into()),
+        (Format::Tops, format!("{huge} {huge}\n0 0 0\n")),
+        (Format::Tops, "1 1\n0 0 0\n9000000000000000000 0\n".into()),
         (Format::Off, "OFF 1 1 0\n0 0 0\n9000000000000000000 0\n".into()),
         (
             Format::Ply,
@@ -114,6 +118,7 @@ fn counts_are_not_trusted() {
     list.truncate(list.len() - 4);
     list.extend([0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 1]);
     assert!(message(Format::Ply, list).contains("ends here"));
+    assert!(message(Format::Tetbin, b"TETB\xff\xff\xff\xff\xff\xff\xff\xff").contains("ends here"));
     let mut stl = stl::binary("", &[]);
     stl[80..].fill(0xff);
     assert!(message(Format::Stl, stl).contains("ends here"));

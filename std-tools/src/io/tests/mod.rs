@@ -12,6 +12,7 @@ mod ply;
 mod simplex_list;
 mod stl;
 mod text;
+mod tops;
 
 use std::collections::HashSet;
 
