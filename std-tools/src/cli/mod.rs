@@ -14,6 +14,7 @@ mod expansion;
 mod export;
 mod extract;
 mod frozen_output;
+mod generate;
 mod homology;
 mod info;
 mod input;
@@ -66,6 +67,7 @@ interrupted, and 128 and its number for other signals.";
 #[derive(Subcommand)]
 enum Command {
     Build(build::Args),
+    Generate(generate::Args),
     Rips(rips::Args),
     Witness(witness::Args),
     Expand(expand::Args),
@@ -88,6 +90,7 @@ impl Command {
     fn run(self) -> anyhow::Result<()> {
         match self {
             Self::Build(args) => args.run(),
+            Self::Generate(args) => args.run(),
             Self::Rips(args) => args.run(),
             Self::Witness(args) => args.run(),
             Self::Expand(args) => args.run(),

@@ -106,10 +106,10 @@ impl Target {
 }
 
 /// How many simplices there are, and of each dimension: `25 simplices: 5 + 10 + 10`.
-pub(super) fn counted(simplices: &[usize]) -> String {
+pub(super) fn counted<N: Copy + Display + std::iter::Sum>(simplices: &[N]) -> String {
     let counts: Vec<_> = simplices.iter().map(grouped).collect();
     let counts = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(" + ")) };
-    format!("{} simplices{counts}", grouped(simplices.iter().sum::<usize>()))
+    format!("{} simplices{counts}", grouped(simplices.iter().copied().sum::<N>()))
 }
 
 /// A number with its digits in groups of three.

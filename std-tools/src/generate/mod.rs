@@ -1,11 +1,15 @@
-//! Point clouds by a documented rule and seed: for tests, benchmarks and examples that need no file.
+//! Point clouds and triangulations by a documented rule and seed: for tests, benchmarks and examples that need no file.
 //!
-//! The rules use nothing but SplitMix64 and IEEE + − × ÷ √, so any language gives the same bits; only
-//! [`klein_bottle_grid`] also uses the sine and cosine of the platform.
+//! [`Triangulation`] is a stream of simplices of any length. The rules of the clouds use nothing but SplitMix64 and IEEE
+//! + − × ÷ √, so any language gives the same bits; only [`klein_bottle_grid`] also uses the sine and cosine of the platform.
+
+mod triangulation;
 
 use std::f64::consts::PI;
 
 use crate::points::Points;
+
+pub use triangulation::{GenerateError, Triangulation};
 
 /// SplitMix64 (Steele, Lea and Flood, 2014), and uniform numbers from its upper 53 bits.
 #[derive(Clone, Debug)]
