@@ -9,6 +9,7 @@
 //! | read meshes and lists of simplices | [`io`] | [`io::read_path`], [`io::merge`](io::merge()) |
 //! | read points, distances, graphs | [`io::space`] | [`io::space::read_space_path`] |
 //! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
+//! | simplices on disk | [`spool`] | [`spool::Spill`] |
 //! | points and metrics | [`points`] | [`points::Points`], [`points::Metric`] |
 //! | all distances of a finite space | [`distances`] | [`distances::Distances`] |
 //! | clouds that are the same anywhere | [`generate`] | [`generate::sphere4`] |
@@ -16,6 +17,7 @@
 //! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
 //! | a weighted graph | [`graph`] | [`graph::Graph`] |
 //! | simplices to arrays in canonical order | [`mod@build`] | [`build::build`] |
+//! | the same of complexes larger than memory | [`build::external`] | [`build::external::build_to_file`] |
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | structures to compare the SIG with | [`baselines`] | [`baselines::Structure`] |
 //! | the SIG beside them on one complex | [`mod@compare`] | [`compare::compare`] |
@@ -76,6 +78,7 @@ pub mod points;
 pub mod proximity;
 pub mod simplex_tree;
 pub mod soup;
+pub mod spool;
 pub mod store;
 pub mod subsample;
 pub mod tops;

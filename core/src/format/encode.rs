@@ -1,6 +1,7 @@
 //! From a header and sections to the bytes of a file.
 
 use core::fmt;
+use core::ops::Range;
 
 use super::checksum::{CHECKSUM_BLOCK_BYTES, crc32, num_blocks};
 use super::header::{Header, Kind, RawHeader};
@@ -167,6 +168,14 @@ impl<'a> Encoder<'a> {
         })
     }
 
+    /// The sections in the order of the file, the checksums among them, and the bytes of the file that each takes.
+    pub fn places(&self) -> impl Iterator<Item = (SectionKind, Range<u64>)> + use<'a> {
+        self.entries().filter_map(|entry| {
+            let kind = SectionKind::from_code(entry.code)?;
+            Some((kind, entry.offset..entry.offset.saturating_add(byte_len(entry.element, entry.count)?)))
+        })
+    }
+
     /// Writes the file at the start of `out` and returns its length.
     ///
     /// # Errors
@@ -197,6 +206,20 @@ impl<'a> Encoder<'a> {
         crc: impl Fn(u32, &[u8]) -> u32,
         mut sink: impl FnMut(&[u8]) -> Result<(), E>,
     ) -> Result<(), E> {
+        self.write_header(&mut sink)?;
+        let [before, after] = self.parts();
+        before.iter().try_for_each(|section| write_section(section, &mut sink))?;
+        if self.checksums {
+            self.write_checksums(crc, &mut sink)?;
+        }
+        after.iter().try_for_each(|section| write_section(section, &mut sink))
+    }
+
+    /// Hands the bytes before the first section to `sink`, piece by piece, in order.
+    ///
+    /// # Errors
+    /// The first error of `sink`.
+    pub fn write_header<E>(&self, mut sink: impl FnMut(&[u8]) -> Result<(), E>) -> Result<(), E> {
         let names = || self.sections.iter().map(|section| section.name.as_bytes());
         let mut header = RawHeader::to_file_bytes(&self.header);
         let checksum =
@@ -205,13 +228,7 @@ impl<'a> Encoder<'a> {
         sink(&header)?;
         self.entries().try_for_each(|entry| sink(&entry.to_file_bytes()))?;
         names().filter(|name| !name.is_empty()).try_for_each(&mut sink)?;
-        pad(self.header.table_bytes(), &mut sink)?;
-        let [before, after] = self.parts();
-        before.iter().try_for_each(|section| write_section(section, &mut sink))?;
-        if self.checksums {
-            self.write_checksums(crc, &mut sink)?;
-        }
-        after.iter().try_for_each(|section| write_section(section, &mut sink))
+        pad(self.header.table_bytes(), &mut sink)
     }
 
     fn write_checksums<E>(

@@ -9,6 +9,8 @@
 //!
 //! A [simplex tree](crate::frozen::FrozenTree) skips the first two steps: `complete` reads the facets off it (`facets`).
 //!
+//! What does not fit memory is built piece by piece by the same steps: [`external`].
+//!
 //! The result depends on the set of simplices, the labels and the options only: not on the order of the input, nor on
 //! the number of threads. Work runs in rayon's current pool.
 
@@ -17,6 +19,7 @@ mod blocks;
 mod clusters;
 mod cofaces;
 mod complete;
+pub mod external;
 mod facets;
 mod levels;
 mod limits;
@@ -81,6 +84,12 @@ pub enum Phase {
     Boundary,
     /// Finding the partial co-boundary relations; counted in dimensions.
     Coboundary,
+    /// Out of core: dealing the listed simplices out to the pieces; counted in simplices listed.
+    Distribution,
+    /// Out of core: building the pieces to count their simplices; counted in vertices.
+    Count,
+    /// Out of core: building the pieces again to write them; counted in vertices.
+    Write,
 }
 
 /// A callback that is told the phase, how much of it is done, and how much there is.
@@ -403,7 +412,8 @@ fn finish<I: clusters::Cell>(
 where
     Arrays: From<SigArrays<I>>,
 {
-    let (parity, counts, is_top) = report::top_simplices(&arrays, listed);
+    let is_top = report::is_top(&arrays, listed);
+    let (parity, counts) = report::tally(listed, &is_top);
     (clusters::add(arrays, &is_top, meter), parity, counts)
 }
 

@@ -164,9 +164,11 @@ fn sort_along_curve(inputs: &mut Vec<u32>, dim: usize, value: impl Fn(usize) -> 
         extent = extent.max(most - least);
     }
     let scale = f64::from((1_u32 << CURVE_BITS) - 1);
+    // With the position among the inputs, so that ties need no stable sort, which takes as much memory again.
     let mut keyed: Vec<(u64, u32)> = inputs
         .par_iter()
-        .map(|&input| {
+        .zip(0..crate::build::narrow(inputs.len()))
+        .map(|(&input, position)| {
             let mut cell = [0_u32; 3];
             for axis in 0..axes {
                 // Dividing first cannot overflow where the extent is huge; a saturating cast takes NaN (0/0) to 0.
@@ -174,12 +176,11 @@ fn sort_along_curve(inputs: &mut Vec<u32>, dim: usize, value: impl Fn(usize) -> 
                 let quantised = ((at(input, axis) - low[axis]) / extent * scale) as u32;
                 cell[axis] = quantised;
             }
-            (hilbert_index(&mut cell[..axes]), input)
+            (hilbert_index(&mut cell[..axes]), position)
         })
         .collect();
-    keyed.par_sort_by_key(|&(key, _)| key);
-    inputs.clear();
-    inputs.extend(keyed.into_iter().map(|(_, input)| input));
+    keyed.par_sort_unstable();
+    *inputs = keyed.into_iter().map(|(_, position)| inputs[position as usize]).collect();
 }
 
 /// The position of a cell on the Hilbert curve of its dimension, [`CURVE_BITS`] a coordinate.

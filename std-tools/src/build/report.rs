@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use sig_core::Index;
+use sig_core::{Dim, Index};
 
 use crate::build::SigArrays;
 use crate::build::local::{EVEN, ODD};
@@ -42,6 +42,7 @@ impl fmt::Display for BuildReport {
 }
 
 /// What the arrays and the marks of the listed simplices tell for the report.
+#[derive(Clone, Default)]
 pub(super) struct Counts {
     pub(super) distinct_listed: usize,
     pub(super) non_maximal: usize,
@@ -49,40 +50,52 @@ pub(super) struct Counts {
     pub(super) top_simplices: Vec<usize>,
 }
 
-/// Finds the top simplices, all of them listed (or unused vertices, which are marked as listed); their parity bits in
-/// id order, the counts for the report, and which simplices of each dimension are top (nothing for a dimension of which
-/// none is). `listed[p]` holds one byte for every p-simplex, or nothing if none is
-/// listed.
-pub(super) fn top_simplices<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> (Vec<u8>, Counts, Vec<Vec<bool>>) {
-    let mut parity = Vec::new();
-    let mut num_tops = 0;
-    let mut counts =
-        Counts { distinct_listed: 0, non_maximal: 0, conflicting: 0, top_simplices: vec![0; arrays.first.len()] };
+impl Counts {
+    /// Takes in simplices of one dimension, how they are listed and which of them are top, and calls `parity` with the
+    /// orientation of each that is: whether it is odd.
+    pub(super) fn add(&mut self, dim: Dim, marks: &[u8], is_top: &[bool], mut parity: impl FnMut(bool)) {
+        for (&mark, &is_top) in marks.iter().zip(is_top) {
+            self.distinct_listed += usize::from(mark & (EVEN | ODD) != 0);
+            if is_top {
+                parity(mark == ODD);
+                self.conflicting += usize::from(mark == EVEN | ODD);
+                self.top_simplices[dim] += 1;
+            } else {
+                self.non_maximal += usize::from(mark & (EVEN | ODD) != 0);
+            }
+        }
+    }
+}
+
+/// Which simplices of each dimension are top, all of them listed (or unused vertices, which are marked as listed); nothing
+/// for a dimension of which none is listed. `listed[p]` holds one byte for every p-simplex, or nothing if none is.
+pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec<Vec<bool>> {
     let mut tops = vec![Vec::new(); arrays.first.len()];
     for (dim, marks) in listed.iter().enumerate().filter(|(_, marks)| !marks.is_empty()) {
         let mut is_top = vec![true; marks.len()];
         for facet in arrays.facets(dim + 1) {
             is_top[facet.to_usize() - arrays.first[dim]] = false;
         }
-        for (&mark, &is_top) in marks.iter().zip(&is_top) {
-            counts.distinct_listed += usize::from(mark & (EVEN | ODD) != 0);
-            if !is_top {
-                counts.non_maximal += usize::from(mark & (EVEN | ODD) != 0);
-                continue;
-            }
+        tops[dim] = is_top;
+    }
+    tops
+}
+
+/// The parity bits of the top simplices in id order, and the counts for the report.
+pub(super) fn tally(listed: &[Vec<u8>], is_top: &[Vec<bool>]) -> (Vec<u8>, Counts) {
+    let mut parity = Vec::new();
+    let mut num_tops = 0;
+    let mut counts = Counts { top_simplices: vec![0; is_top.len()], ..Counts::default() };
+    for (dim, (marks, is_top)) in listed.iter().zip(is_top).enumerate() {
+        counts.add(dim, marks, is_top, |is_odd| {
             if num_tops % 8 == 0 {
                 parity.push(0);
             }
             if let Some(byte) = parity.last_mut() {
-                *byte |= u8::from(mark == ODD) << (num_tops % 8);
+                *byte |= u8::from(is_odd) << (num_tops % 8);
             }
             num_tops += 1;
-            counts.conflicting += usize::from(mark == EVEN | ODD);
-            counts.top_simplices[dim] += 1;
-        }
-        if counts.top_simplices[dim] > 0 {
-            tops[dim] = is_top;
-        }
+        });
     }
-    (parity, counts, tops)
+    (parity, counts)
 }

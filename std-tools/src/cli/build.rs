@@ -8,15 +8,17 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 use sig_core::{Index, IndexWidth, SimplexId};
+use sig_tools::build::external::{Resources, build_to_file};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
 use sig_tools::io::{self as readers, Compression, Format, MergeReport, ReadOptions, ReadReport};
 use sig_tools::names::simplex_name;
 use sig_tools::soup::Soup;
+use sig_tools::spool::Spill;
 use sig_tools::store::{EncodeError, EncodeOptions, Encoding};
 use sig_tools::{Loaded, with_view};
 
 use super::output::{self, Content, grouped};
-use super::{Threads, progress};
+use super::{Threads, UsageError, progress};
 
 /// Build a complex from meshes or lists of simplices
 ///
@@ -28,7 +30,8 @@ Examples:
   sig build bunny.off -o bunny.sigc
   sig build part1.txt part2.txt -o all.sigc --force     simplices by label, from two files
   sig build bracket.msh.gz -o bracket.sigc --order input --json
-  printf 'a,b,c\\nc,d\\n' | sig build - -o small.sigc --format simplices")]
+  printf 'a,b,c\\nc,d\\n' | sig build - -o small.sigc --format simplices
+  sig build huge.msh -o huge.sigc --memory 4GiB         a complex larger than that, by way of the disk")]
 pub(super) struct Args {
     /// The inputs; `-` is standard input
     #[arg(required = true, value_name = "INPUT")]
@@ -81,6 +84,16 @@ pub(super) struct Args {
     #[arg(long, value_name = "N")]
     max_simplices: Option<u64>,
 
+    /// Build out of core, in at most this much memory, like 4GiB: the file is the same, the complex may be many times
+    /// larger. What has to fit is the vertices, and on each thread the simplices around any one of them
+    #[arg(long, value_name = "BYTES", value_parser = super::expansion::bytes, conflicts_with = "pairs")]
+    memory: Option<u64>,
+
+    /// Where to keep temporary data with `--memory`, about as much as the input, twice; by default, beside OUT. They
+    /// have no name there, and are gone however the work ends
+    #[arg(long, value_name = "DIR", requires = "memory")]
+    temp_dir: Option<PathBuf>,
+
     /// Print a JSON object on what was read and built
     #[arg(long)]
     json: bool,
@@ -110,28 +123,13 @@ fn width_parser() -> impl TypedValueParser<Value = IndexWidth> {
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let start = Instant::now();
-        let (path, existing) = (&self.target.output, self.target.existing());
         self.target.check(&self.inputs, self.json, Content::Binary)?;
         self.threads.start()?;
-        let (soup, inputs, merged) = self.read()?;
-        let built = self.build(soup)?;
-        let options = EncodeOptions {
-            width: self.index_bits,
-            tree: !self.no_tree,
-            pairs: self.pairs,
-            checksums: !self.no_checksums,
-            provenance: self.provenance.as_deref(),
-            ..EncodeOptions::default()
+        let report = match self.memory {
+            Some(memory) => self.out_of_core(memory)?,
+            None => self.in_memory()?,
         };
-        let encoding = Encoding::new(&built, &options).map_err(|error| explain(error, &built))?;
-        output::to_path(path, existing, |out| encoding.write_to(out))?;
-        let report = Report {
-            output: path.display().to_string(),
-            file_bytes: encoding.file_bytes()?,
-            index_bits: encoding.width().bits(),
-            seconds: start.elapsed().as_secs_f64(),
-            ..Report::new(&built, inputs, &merged)
-        };
+        let report = Report { seconds: start.elapsed().as_secs_f64(), ..report };
         report.log();
         if self.json {
             output::json(&report)?;
@@ -139,10 +137,71 @@ impl Args {
         Ok(())
     }
 
+    fn in_memory(&self) -> anyhow::Result<Report> {
+        let (path, existing) = (&self.target.output, self.target.existing());
+        let (soup, inputs, merged) = self.read()?;
+        let bars = progress::Phases::new();
+        let show = |phase, done, total| bars.show(phase, done, total);
+        let built = build::build(soup, &self.build_options(&show));
+        bars.clear();
+        let built = built?;
+        let encoding = Encoding::new(&built, &self.encode_options()).map_err(|error| explain(error, &built))?;
+        output::to_path(path, existing, |out| encoding.write_to(out))?;
+        let simplices = match &built.arrays {
+            Arrays::Narrow(arrays) => counts(arrays),
+            Arrays::Wide(arrays) => counts(arrays),
+        };
+        Ok(Report {
+            output: path.display().to_string(),
+            file_bytes: encoding.file_bytes()?,
+            index_bits: encoding.width().bits(),
+            ..Report::new(simplices, &built.report, inputs, &merged)
+        })
+    }
+
+    fn out_of_core(&self, memory: u64) -> anyhow::Result<Report> {
+        let [input] = self.inputs.as_slice() else {
+            return Err(UsageError("--memory is for one input; put several lists into one".to_owned()).into());
+        };
+        let (path, existing) = (&self.target.output, self.target.existing());
+        let beside = path.parent().filter(|parent| !parent.as_os_str().is_empty() && !output::is_stdout(path));
+        let directory = self.temp_dir.as_deref().or(beside).unwrap_or(Path::new("."));
+        let unusable = || format!("{}: cannot keep temporary data there", directory.display());
+        let spill = Spill::new_in(directory).with_context(unusable)?;
+        let (soup, read) = self.read_one(input, Some(&spill))?;
+        let bars = progress::Phases::new();
+        let show = |phase, done, total| bars.show(phase, done, total);
+        let (options, encode) = (self.build_options(&show), self.encode_options());
+        let outcome = output::to_file(path, existing, directory, |file| {
+            build_to_file(soup, spill, &options, &encode, Resources { memory, directory }, file)
+        });
+        bars.clear();
+        let outcome = outcome?;
+        let inputs = vec![Input::new(input, read)];
+        Ok(Report {
+            output: path.display().to_string(),
+            file_bytes: outcome.file_bytes,
+            index_bits: outcome.width.bits(),
+            out_of_core: Some(OutOfCore { pieces: outcome.pieces, temporary_bytes: outcome.temporary_bytes }),
+            ..Report::new(outcome.simplices, &outcome.report, inputs, &MergeReport::default())
+        })
+    }
+
+    fn encode_options(&self) -> EncodeOptions<'_> {
+        EncodeOptions {
+            width: self.index_bits,
+            tree: !self.no_tree,
+            pairs: self.pairs,
+            checksums: !self.no_checksums,
+            provenance: self.provenance.as_deref(),
+            ..EncodeOptions::default()
+        }
+    }
+
     fn read(&self) -> anyhow::Result<(Soup, Vec<Input>, MergeReport)> {
         let (mut soups, mut inputs) = (Vec::new(), Vec::new());
         for path in &self.inputs {
-            let (soup, report) = self.read_one(path)?;
+            let (soup, report) = self.read_one(path, None)?;
             soups.push(soup);
             inputs.push(Input::new(path, report));
         }
@@ -150,16 +209,14 @@ impl Args {
         Ok((soup, inputs, merged))
     }
 
-    fn read_one(&self, path: &Path) -> Result<(Soup, ReadReport), readers::ReadError> {
+    fn read_one(&self, path: &Path, spill: Option<&Spill>) -> Result<(Soup, ReadReport), readers::ReadError> {
         let options =
-            ReadOptions { format: self.format, drop_degenerate: self.drop_degenerate, ..ReadOptions::default() };
+            ReadOptions { format: self.format, drop_degenerate: self.drop_degenerate, spill, ..ReadOptions::default() };
         progress::reading(path, |progress| readers::read_path(path, &ReadOptions { progress, ..options }))
     }
 
-    fn build(&self, soup: Soup) -> Result<Built, build::BuildError> {
-        let bars = progress::Phases::new();
-        let show = |phase, done, total| bars.show(phase, done, total);
-        let options = BuildOptions {
+    fn build_options<'a>(&self, progress: build::Progress<'a>) -> BuildOptions<'a> {
+        BuildOptions {
             order: match self.order {
                 Order::Auto => VertexOrder::Auto,
                 Order::Input => VertexOrder::Input,
@@ -168,12 +225,9 @@ impl Args {
             },
             unused: if self.drop_unused { Unused::Drop } else { Unused::Keep },
             max_simplices: self.max_simplices,
-            progress: progress::is_watched().then_some(&show),
+            progress: progress::is_watched().then_some(progress),
             ..BuildOptions::default()
-        };
-        let built = build::build(soup, &options);
-        bars.clear();
-        built
+        }
     }
 }
 
@@ -204,7 +258,15 @@ struct Report {
     conflicting_orientations: usize,
     unused_vertices_kept: usize,
     unused_vertices_dropped: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    out_of_core: Option<OutOfCore>,
     seconds: f64,
+}
+
+#[derive(Serialize)]
+struct OutOfCore {
+    pieces: usize,
+    temporary_bytes: u64,
 }
 
 #[derive(Serialize)]
@@ -274,12 +336,8 @@ impl Input {
 }
 
 impl Report {
-    fn new(built: &Built, inputs: Vec<Input>, merged: &MergeReport) -> Self {
-        let simplices = match &built.arrays {
-            Arrays::Narrow(arrays) => counts(arrays),
-            Arrays::Wide(arrays) => counts(arrays),
-        };
-        let BuildReport { listed, repeated, non_maximal, conflicting, unused_kept, unused_dropped, .. } = built.report;
+    fn new(simplices: Vec<usize>, report: &BuildReport, inputs: Vec<Input>, merged: &MergeReport) -> Self {
+        let &BuildReport { listed, repeated, non_maximal, conflicting, unused_kept, unused_dropped, .. } = report;
         let renumbered = merged.renumbered.iter().filter_map(|renumbered| {
             let file = inputs.get(renumbered.input)?.file.clone();
             Some(Renumbered { file, from: renumbered.from, to: renumbered.to })
@@ -287,7 +345,7 @@ impl Report {
         Self {
             dimension: i64::try_from(simplices.len()).unwrap_or(i64::MAX) - 1,
             simplices,
-            top_simplices: built.report.top_simplices.clone(),
+            top_simplices: report.top_simplices.clone(),
             renumbered: renumbered.collect(),
             inputs,
             listed,
@@ -313,6 +371,10 @@ impl Report {
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");
         note(self.unused_vertices_kept, "unused vertices kept (--drop-unused drops them)");
         note(self.unused_vertices_dropped, "unused vertices dropped");
+        if let Some(OutOfCore { pieces, temporary_bytes }) = &self.out_of_core {
+            let (pieces, bytes) = (grouped(pieces), grouped(temporary_bytes));
+            output::log(format_args!("       in {pieces} pieces, {bytes} bytes of temporary data"));
+        }
         let (bytes, width) = (grouped(self.file_bytes), self.index_bits);
         output::log(format_args!("wrote  {}: {bytes} bytes, {width}-bit indices, {:.2} s", self.output, self.seconds));
     }

@@ -55,7 +55,7 @@ pub(super) fn none_if_dry_run(output: Arg) -> Arg {
 }
 
 /// A number of bytes, like 500000, 4GiB, 4Gi or 4GB.
-fn bytes(text: &str) -> Result<u64, String> {
+pub(super) fn bytes(text: &str) -> Result<u64, String> {
     const EXPECTED: &str = "not a number of bytes like 500000, 4GiB or 4GB";
     let digits = text.bytes().take_while(u8::is_ascii_digit).count();
     let (number, unit) = text.split_at(digits);

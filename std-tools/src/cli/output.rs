@@ -1,7 +1,7 @@
 //! Writing: data to standard output or, whole or not at all, to a file.
 
 use std::fmt::Display;
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::Path;
 
 use serde::Serialize;
@@ -61,6 +61,26 @@ pub(super) fn to_path(
         atomic::write(path, existing, fill)?;
     }
     Ok(())
+}
+
+/// Writes a file in any order of its bytes; standard output by way of a file in `directory`, which has no name.
+pub(super) fn to_file<T, E>(
+    path: &Path,
+    existing: Existing,
+    directory: &Path,
+    fill: impl FnOnce(&std::fs::File) -> Result<T, E>,
+) -> anyhow::Result<T>
+where
+    anyhow::Error: From<E>,
+{
+    if !is_stdout(path) {
+        return atomic::write_file(path, existing, |file| fill(file).map_err(anyhow::Error::from));
+    }
+    let mut file = tempfile::tempfile_in(directory)?;
+    let filled = fill(&file)?;
+    file.rewind()?;
+    stdout(|out| io::copy(&mut file, out).map(drop))?;
+    Ok(filled)
 }
 
 /// The arguments of a file to be written.

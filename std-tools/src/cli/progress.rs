@@ -93,6 +93,9 @@ impl Phases {
             Phase::Levels => "finding faces",
             Phase::Boundary => "boundary relations",
             Phase::Coboundary => "partial co-boundaries",
+            Phase::Distribution => "dealing out simplices",
+            Phase::Count => "counting pieces",
+            Phase::Write => "writing pieces",
             _ => "building",
         };
         self.step(what, done, total);

@@ -1,12 +1,16 @@
 //! What a reader has gathered so far: the soup in the making and its report.
 
-use sig_core::MAX_DIM;
+use sig_core::{Dim, MAX_DIM};
 
 use super::cone::{self, Polyhedron};
 use super::error::ErrorKind;
 use super::report::ReadReport;
 use super::{Format, ReadOptions};
 use crate::soup::{Coordinates, Labels, Scalars, Soup};
+use crate::spool::Spill;
+
+/// Vertex numbers of the simplices of one dimension from which on they are spilled, where they are.
+const SPILL: usize = 1 << 18;
 
 /// The most room that a count declared in a header may reserve before any data has arrived, in vertices or cells.
 const RESERVE: u64 = 1 << 16;
@@ -36,14 +40,21 @@ impl Refusal {
 
 /// Simplices gathered so far, and the report on them.
 pub(super) struct Intake {
+    /// Those that are not spilled.
     simplices: Vec<Vec<u32>>,
+    spill: Option<Spill>,
     pub(super) report: ReadReport,
     drop_degenerate: bool,
 }
 
 impl Intake {
     pub(super) fn new(format: Format, options: &ReadOptions<'_>) -> Self {
-        Self { simplices: Vec::new(), report: ReadReport::new(format), drop_degenerate: options.drop_degenerate }
+        Self {
+            simplices: Vec::new(),
+            spill: options.spill.cloned(),
+            report: ReadReport::new(format),
+            drop_degenerate: options.drop_degenerate,
+        }
     }
 
     /// Adds a simplex unless it repeats a vertex.
@@ -107,6 +118,17 @@ impl Intake {
             self.simplices.resize_with(dim + 1, Vec::new);
         }
         self.simplices[dim].extend_from_slice(vertices);
+        if self.simplices[dim].len() >= SPILL {
+            self.spill(dim);
+        }
+    }
+
+    /// Brings the simplices of one dimension to disk, if they are to go there.
+    fn spill(&mut self, dim: Dim) {
+        if let Some(spill) = &self.spill {
+            spill.append(dim, &self.simplices[dim]);
+            self.simplices[dim].clear();
+        }
     }
 
     /// Whether each of `count` vertices lies in a simplex.
@@ -114,6 +136,9 @@ impl Intake {
         let mut used = vec![false; count];
         for &vertex in self.simplices.iter().flatten() {
             used[vertex as usize] = true;
+        }
+        if let Some(spill) = &self.spill {
+            spill.for_each_vertex(|vertex| used[vertex as usize] = true);
         }
         used
     }
@@ -130,18 +155,25 @@ impl Intake {
         for vertex in self.simplices.iter_mut().flatten() {
             *vertex = numbers[*vertex as usize];
         }
+        if let Some(spill) = &self.spill {
+            spill.renumber(|vertex| numbers[vertex as usize]);
+        }
     }
 
-    /// The soup, now that the vertices are known too.
+    /// The soup, now that the vertices are known too; without simplices if they are spilled.
     pub(super) fn finish(
-        self,
+        mut self,
         labels: Labels,
         declared: bool,
         coordinates: Option<(usize, Scalars)>,
     ) -> (Soup, ReadReport) {
-        let Self { simplices, mut report, .. } = self;
+        (0..self.simplices.len()).for_each(|dim| self.spill(dim));
+        let Self { simplices, spill, mut report, .. } = self;
         report.vertices = labels.len();
-        report.simplices = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).collect();
+        report.simplices = match spill {
+            Some(spill) => spill.counts(),
+            None => simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).collect(),
+        };
         let coordinates = coordinates.map(|(dim, values)| Coordinates { dim, values });
         (Soup { labels, declared, coordinates, simplices }, report)
     }

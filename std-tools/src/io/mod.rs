@@ -44,6 +44,7 @@ pub use merge::{MergeError, MergeReport, Renumbered, merge};
 pub use report::{Ignored, ReadReport};
 
 use crate::soup::Soup;
+use crate::spool::Spill;
 use error::Fault;
 use source::Source;
 
@@ -54,6 +55,8 @@ pub struct ReadOptions<'a> {
     pub format: Option<Format>,
     /// Drop simplices that repeat a vertex, and count them, instead of refusing the input.
     pub drop_degenerate: bool,
+    /// Where the simplices go instead of memory, for a complex larger than that; the soup then has none.
+    pub spill: Option<&'a Spill>,
     /// Called now and then with the number of bytes read from the input, before decompression.
     pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
 }
@@ -63,6 +66,7 @@ impl fmt::Debug for ReadOptions<'_> {
         f.debug_struct("ReadOptions")
             .field("format", &self.format)
             .field("drop_degenerate", &self.drop_degenerate)
+            .field("spill", &self.spill.is_some())
             .field("progress", &self.progress.is_some())
             .finish()
     }

@@ -107,21 +107,35 @@ pub fn write(
     existing: Existing,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
+    write_file(path, existing, |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
+        fill(&mut out).and_then(|()| out.flush()).map_err(|error| WriteError::Write { path: path.to_owned(), error })
+    })
+}
+
+/// As [`write()`], for a writer that wants the file itself: to write it in any order, from its end to its start.
+///
+/// # Errors
+/// [`WriteError`], and those of `fill`.
+pub fn write_file<T, E: From<WriteError>>(
+    path: &Path,
+    existing: Existing,
+    fill: impl FnOnce(&File) -> Result<T, E>,
+) -> Result<T, E> {
     check(path, existing)?;
     // A link stays one: what it leads to is replaced.
     let resolved = fs::canonicalize(path).ok().filter(|_| path.is_symlink());
     let path = resolved.as_deref().unwrap_or(path);
     let failed = |error| WriteError::Write { path: path.to_owned(), error };
     let temporary = Temporary::create(path)?;
-    let mut out = BufWriter::with_capacity(1 << 16, temporary.file());
-    fill(&mut out).and_then(|()| out.flush()).map_err(failed)?;
-    drop(out);
+    let filled = fill(temporary.file())?;
     if let Ok(replaced) = fs::metadata(path) {
         temporary.file().set_permissions(replaced.permissions()).map_err(failed)?;
     }
     temporary.file().sync_all().map_err(failed)?;
     temporary.persist(path, existing)?;
-    sync_directory(directory_of(path)).map_err(|error| WriteError::Sync { path: path.to_owned(), error })
+    sync_directory(directory_of(path)).map_err(|error| WriteError::Sync { path: path.to_owned(), error })?;
+    Ok(filled)
 }
 
 /// The temporaries that exist.

@@ -17,7 +17,7 @@ use crate::soup::{Coordinates, Labels, Scalars};
 /// The dimension from which on a SIG gets lower neighbours by default: they cost an index an edge, little where most
 /// simplices are larger, and stars in such complexes have so many top simplices that the tree finds them faster than the
 /// partial co-boundary.
-const LOWER_NEIGHBOURS_FROM: usize = 4;
+pub(crate) const LOWER_NEIGHBOURS_FROM: usize = 4;
 
 /// How a complex is encoded. The default: the least width, tree sections, checksums, no provenance.
 #[derive(Clone, Copy, Debug)]
@@ -160,14 +160,14 @@ fn convert<A: Index, B: Index>(values: &[A]) -> Vec<B> {
 }
 
 #[derive(Clone, Debug)]
-enum EncodedLabels<'a> {
+pub(crate) enum EncodedLabels<'a> {
     Numbered,
     Integers(&'a [u64]),
     Text { offsets: Vec<u64>, text: String },
 }
 
 impl<'a> EncodedLabels<'a> {
-    fn new(labels: &'a Labels) -> Self {
+    pub(crate) fn new(labels: &'a Labels) -> Self {
         match labels {
             Labels::Numbered(_) => Self::Numbered,
             Labels::Integers(labels) if labels.iter().copied().eq(0..labels.len() as u64) => Self::Numbered,
@@ -276,11 +276,7 @@ impl<'a> Encoding<'a> {
         largest: u64,
         options: &EncodeOptions<'a>,
     ) -> Result<Self, EncodeError> {
-        let least = IndexWidth::least_for(largest).unwrap_or(IndexWidth::Bits64);
-        let width = options.width.unwrap_or(least);
-        if width < least {
-            return Err(EncodeError::TooNarrow { width, largest, least });
-        }
+        let width = width_for(largest, options)?;
         let first = first.iter().map(|&first| first as u64).collect::<Vec<_>>();
         let lookup = match width {
             IndexWidth::Bits16 => Indices::Bits16(convert(&first).into()),
@@ -417,7 +413,7 @@ impl<'a> Encoding<'a> {
 }
 
 /// The coordinates as a column, and how many a vertex has.
-fn coordinate_column(coordinates: &Coordinates) -> (u32, Column<'_>) {
+pub(crate) fn coordinate_column(coordinates: &Coordinates) -> (u32, Column<'_>) {
     let column = match &coordinates.values {
         Scalars::F32(values) => Column::F32(values),
         Scalars::F64(values) => Column::F64(values),
@@ -425,8 +421,15 @@ fn coordinate_column(coordinates: &Coordinates) -> (u32, Column<'_>) {
     (u32::try_from(coordinates.dim).unwrap_or(u32::MAX), column)
 }
 
+/// The width of a file with ids and list offsets up to `largest`.
+pub(crate) fn width_for(largest: u64, options: &EncodeOptions<'_>) -> Result<IndexWidth, EncodeError> {
+    let least = IndexWidth::least_for(largest).unwrap_or(IndexWidth::Bits64);
+    let width = options.width.unwrap_or(least);
+    if width < least { Err(EncodeError::TooNarrow { width, largest, least }) } else { Ok(width) }
+}
+
 /// The width of the ids of `count` vertices where they are labels of tree nodes.
-fn width_of_vertices(count: usize) -> IndexWidth {
+pub(crate) fn width_of_vertices(count: usize) -> IndexWidth {
     IndexWidth::least_for(count as u64).unwrap_or(IndexWidth::Bits64)
 }
 

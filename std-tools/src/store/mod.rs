@@ -15,8 +15,8 @@ pub mod verify;
 mod view;
 
 pub use bytes::AlignedBytes;
-pub(crate) use encode::crc32;
 pub use encode::{EncodeError, EncodeOptions, Encoding};
+pub(crate) use encode::{EncodedLabels, LOWER_NEIGHBOURS_FROM, coordinate_column, crc32, width_for, width_of_vertices};
 pub(crate) use mapped::map_file;
 pub use mapped::{Access, Loaded, Mapped, OpenError, OpenErrorKind};
 pub use scratch::OwnedScratch;

@@ -26,7 +26,7 @@ fn read_as(format: Format, bytes: impl AsRef<[u8]>) -> Result<(Soup, ReadReport)
 
 /// Reads bytes as a format, dropping simplices that repeat a vertex.
 fn read_dropping(format: Format, bytes: impl AsRef<[u8]>) -> (Soup, ReadReport) {
-    let options = ReadOptions { format: Some(format), drop_degenerate: true, progress: None };
+    let options = ReadOptions { format: Some(format), drop_degenerate: true, ..ReadOptions::default() };
     read_bytes(bytes.as_ref(), "test", &options).unwrap()
 }
 
