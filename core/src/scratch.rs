@@ -11,7 +11,7 @@ use crate::id::Index;
 use crate::slices;
 
 /// Bits a word of marks.
-const WORD_BITS: usize = u32::BITS as usize;
+pub(crate) const WORD_BITS: usize = u32::BITS as usize;
 
 /// Words of marks for a complex of so many simplices: one bit each, the paper's visited flag (sig-2004, 4.2).
 #[must_use]
@@ -223,6 +223,14 @@ impl<I: Index> Queue<'_, I> {
             return None;
         }
         Some((*self.ids.get(position)?, *self.masks.get(position)?))
+    }
+
+    /// Takes out the last entry.
+    #[inline]
+    pub(crate) fn pop(&mut self) -> Option<(I, u32)> {
+        let entry = self.get(self.len.checked_sub(1)?)?;
+        self.len -= 1;
+        Some(entry)
     }
 
     pub(crate) const fn len(&self) -> usize {

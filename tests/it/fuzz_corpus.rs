@@ -29,6 +29,11 @@ fn tree() {
 }
 
 #[test]
+fn mcc() {
+    replay("mcc", fuzz::mcc);
+}
+
+#[test]
 fn roundtrip() {
     replay("roundtrip", fuzz::roundtrip);
 }

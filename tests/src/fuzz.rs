@@ -2,6 +2,7 @@
 
 use arbitrary::Unstructured;
 use sig_core::format::{self, Container};
+use sig_core::mcc::Mcc;
 use sig_core::{AnyComplex, AnyTree, with_complex, with_tree};
 use sig_tools::build::{BuildOptions, build};
 use sig_tools::incidence_graph::IncidenceGraph;
@@ -9,10 +10,12 @@ pub use sig_tools::io::Format;
 pub use sig_tools::io::space::SpaceFormat;
 use sig_tools::io::space::{Space, SpaceOptions, read_space_bytes};
 use sig_tools::io::{ReadOptions, read_bytes};
+use sig_tools::mcc::Strategy;
 use sig_tools::soup::{Labels, Scalars, Soup};
 
 use crate::conformance;
 use crate::encode::{Options, encode, encode_tree};
+use crate::mcc::{ask_mcc, file_of};
 use crate::oracle::{Oracle, Word};
 use crate::queries::{ask_everything, ask_tree, reseal};
 use sig_tools::store::AlignedBytes;
@@ -59,14 +62,7 @@ pub fn tree(bytes: &[u8]) {
     let oracle = Oracle::new(&simplices(list).unwrap_or_default());
     let lower = !bytes.len().is_multiple_of(3);
     let mut file = encode_tree(&oracle, &Options { lower, ..Options::default() });
-    let arrays = Container::from_bytes(&file).expect("a file that was just written").spans().next();
-    let start = arrays.map_or(file.len(), |(_, _, range)| range.start);
-    for change in damage.chunks_exact(3) {
-        let at = start + usize::from(u16::from_le_bytes([change[0], change[1]])) % (file.len() - start).max(1);
-        if let Some(byte) = file.get_mut(at) {
-            *byte = change[2];
-        }
-    }
+    overwrite(&mut file, damage);
     let Ok(any) = AnyTree::from_bytes(&file) else { return };
     with_tree!(any, tree => {
         ask_tree(&tree, ASKED);
@@ -76,6 +72,43 @@ pub fn tree(bytes: &[u8]) {
             conformance::assert_tree_conforms(&tree, &Oracle::new(&words));
         }
     });
+}
+
+/// Opens the bytes as a multi-resolution complex, and again with the header's checksum made to fit, and asks what was accepted
+/// everything. Then reads them as a list of simplices, simplifies their complex, and does the same of the file with some of its
+/// arrays overwritten by the last bytes.
+///
+/// # Panics
+/// Where an answer is wrong.
+pub fn mcc(bytes: &[u8]) {
+    let ask = |file: &AlignedBytes| {
+        if let Ok(mcc) = Mcc::from_bytes(file) {
+            ask_mcc(&mcc);
+        }
+    };
+    let mut buffer = AlignedBytes::from(bytes);
+    ask(&buffer);
+    reseal(&mut buffer);
+    if *buffer != *bytes {
+        ask(&buffer);
+    }
+    let (list, damage) = bytes.split_at(bytes.len() - bytes.len() / 4);
+    let strategy = if bytes.len().is_multiple_of(2) { Strategy::Step } else { Strategy::Batch };
+    let mut file = file_of(&simplices(list).unwrap_or_default(), strategy);
+    overwrite(&mut file, damage);
+    ask(&file);
+}
+
+/// Overwrites bytes behind the table: of three bytes of damage the first two say which, the third what it becomes.
+fn overwrite(file: &mut AlignedBytes, damage: &[u8]) {
+    let arrays = Container::from_bytes(file).expect("a file that was just written").spans().next();
+    let start = arrays.map_or(file.len(), |(_, _, range)| range.start);
+    for change in damage.chunks_exact(3) {
+        let at = start + usize::from(u16::from_le_bytes([change[0], change[1]])) % (file.len() - start).max(1);
+        if let Some(byte) = file.get_mut(at) {
+            *byte = change[2];
+        }
+    }
 }
 
 fn swap_twice(bytes: &AlignedBytes) {

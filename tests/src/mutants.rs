@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use sig_core::format::{Column, Container, ENTRY_BYTES, Encoder, HEADER_BYTES, Section, SectionKind};
+use sig_core::mcc::Mcc;
 use sig_core::{IndexWidth, with_complex, with_tree};
 use sig_tools::View;
 use sig_tools::generate::SplitMix64;
@@ -11,6 +12,7 @@ use sig_tools::store::AlignedBytes;
 
 use crate::encode::{Options, encode, encode_tree};
 use crate::known;
+use crate::mcc::{self, ask_mcc};
 use crate::oracle::{Oracle, Word};
 use crate::queries::{ask_everything, ask_tree, reseal};
 
@@ -39,12 +41,13 @@ impl Random {
     }
 }
 
-/// Small complexes as files of kind SIG and tree, at all widths, with and without the optional sections.
+/// Small complexes as files of kind SIG and tree, at all widths, with and without the optional sections, and as multi-resolution
+/// complexes.
 #[must_use]
 pub fn small_files() -> Vec<AlignedBytes> {
     let complexes =
         ["0123 0145 0156 027 078 09", "01234 1235 236 37 4 5", "012 023 045 056 07", "0 1 2 3", "012345", ""];
-    complexes.into_iter().flat_map(|words| files_of(&known::words(words))).collect()
+    complexes.into_iter().flat_map(|words| files_of(&known::words(words))).chain(mcc::small_files()).collect()
 }
 
 /// The same of complexes of some hundred simplices: surfaces and manifolds from the literature.
@@ -114,7 +117,7 @@ impl Damage {
 }
 
 /// What queries read.
-const ARRAYS: [SectionKind; 10] = [
+const ARRAYS: [SectionKind; 20] = [
     SectionKind::Lookup,
     SectionKind::Boundary,
     SectionKind::Pointers,
@@ -125,6 +128,16 @@ const ARRAYS: [SectionKind; 10] = [
     SectionKind::LowerOffsets,
     SectionKind::LowerNeighbours,
     SectionKind::Pairs,
+    SectionKind::BaseOffsets,
+    SectionKind::CellArcs,
+    SectionKind::LargeIncidences,
+    SectionKind::Origins,
+    SectionKind::RefinementOffsets,
+    SectionKind::RefinementShapes,
+    SectionKind::RefinementSplits,
+    SectionKind::RefinementErrors,
+    SectionKind::RefinementSites,
+    SectionKind::SiteTree,
 ];
 
 /// The sections that are not empty, each with the bytes of an element (0 of one of bits) and where it lies.
@@ -296,7 +309,7 @@ pub enum Fate {
     Answered(usize),
 }
 
-/// Opens a file and asks up to `simplices` of its simplices every query.
+/// Opens a file and asks up to `simplices` of its simplices every query; a multi-resolution complex all.
 ///
 /// # Panics
 /// If a query panics, or gives more items than there can be; or if a file promises more simplices than its bytes can
@@ -308,7 +321,10 @@ pub fn fate(bytes: &AlignedBytes, simplices: usize) -> Fate {
         Ok(view) if view_is_long(view, bytes.len()) => 0,
         Ok(View::Complex(any)) => with_complex!(any, complex => ask_everything(&complex, simplices)),
         Ok(View::Tree(any)) => with_tree!(any, tree => ask_tree(&tree, simplices)),
-        Err(_) => return Fate::Refused,
+        Err(_) => match Mcc::from_bytes(bytes) {
+            Ok(mcc) => ask_mcc(&mcc),
+            Err(_) => return Fate::Refused,
+        },
     };
     Fate::Answered(items)
 }

@@ -198,6 +198,8 @@ pub enum Rule {
     ErrorOrder,
     /// There is an origin for each cell, and a site is a vertex of the full complex.
     Origin,
+    /// The tree over the sites has each refinement once, between those above it, and each site has coordinates.
+    SiteTree,
 }
 
 impl fmt::Display for FormatError {
@@ -288,6 +290,7 @@ impl fmt::Display for Rule {
             Self::Shape => "the dimension of a refinement is not one of the complex",
             Self::ErrorOrder => "an error is not a number, or less than that of a refinement that depends on it",
             Self::Origin => "not as many origins as cells, or a site that is no cell of the full complex",
+            Self::SiteTree => "the tree over the sites has a refinement in the wrong place, or one without coordinates",
         })
     }
 }

@@ -66,11 +66,13 @@ pub enum SectionKind {
     RefinementErrors = 39,
     /// The vertex of the full complex where each refinement is.
     RefinementSites = 40,
+    /// The refinements as a tree over the coordinates of their sites.
+    SiteTree = 41,
 }
 
 impl SectionKind {
     /// Every kind, in the order of their numbers.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::Lookup,
         Self::Boundary,
         Self::Pointers,
@@ -99,6 +101,7 @@ impl SectionKind {
         Self::RefinementSplits,
         Self::RefinementErrors,
         Self::RefinementSites,
+        Self::SiteTree,
     ];
 
     /// The number of the kind in the section table.
@@ -153,6 +156,7 @@ impl SectionKind {
             Self::RefinementSplits => "refinement-splits",
             Self::RefinementErrors => "refinement-errors",
             Self::RefinementSites => "refinement-sites",
+            Self::SiteTree => "site-tree",
         }
     }
 }

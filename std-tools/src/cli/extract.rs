@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use clap::ValueEnum;
 use serde::Serialize;
-use sig_core::mcc::Mcc;
+use sig_core::mcc::{AxisBox, Mcc};
 use sig_tools::cells::write_cells;
 use sig_tools::mcc::{Drawing, Front, ViewAxis, write_mcc};
 use sig_tools::soup::{Coordinates, Scalars};
@@ -46,7 +46,7 @@ pub(super) struct Args {
 
     /// The refinements in a box, given by two corners
     #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, value_parser = corners)]
-    corners: Option<Corners>,
+    corners: Option<AxisBox>,
 
     /// Also write a picture: SVG
     #[arg(long, value_name = "FILE")]
@@ -69,19 +69,12 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// The least and the largest coordinates of a box.
-#[derive(Clone, Copy)]
-struct Corners {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
 /// Six numbers: two corners, in any order along each axis.
-fn corners(text: &str) -> Result<Corners, String> {
+fn corners(text: &str) -> Result<AxisBox, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse::<f64>()).collect();
     match numbers.as_deref() {
         Ok(&[a, b, c, d, e, f]) if !numbers.iter().flatten().any(|number| number.is_nan()) => {
-            Ok(Corners { low: [a.min(d), b.min(e), c.min(f)], high: [a.max(d), b.max(e), c.max(f)] })
+            Ok(AxisBox { low: [a.min(d), b.min(e), c.min(f)], high: [a.max(d), b.max(e), c.max(f)] })
         }
         _ => Err("six numbers with commas between are wanted: x,y,z of one corner, x,y,z of the other".to_owned()),
     }
@@ -122,10 +115,10 @@ impl Args {
         }
         let file = mcc_input::open(&self.input)?;
         let mcc = file.view();
-        let is_wanted = self.wanted(&mcc)?;
-        let wanted = (0..mcc.num_refinements()).filter(|&refinement| is_wanted(refinement)).count();
+        let wanted = self.wanted(&mcc).with_context(|| self.input.display().to_string())?;
         let mut front = Front::new(mcc);
-        front.select(&is_wanted).with_context(|| self.input.display().to_string())?;
+        front.change(wanted.iter().copied(), []).with_context(|| self.input.display().to_string())?;
+        let wanted = wanted.len();
         let refinements = front.num_applied();
         output::log(format_args!(
             "took   {} of {} refinements, {} of them asked for",
@@ -151,17 +144,23 @@ impl Args {
         })
     }
 
-    /// Which refinements are asked for.
-    fn wanted<'m>(&'m self, mcc: &'m Mcc<'_>) -> anyhow::Result<impl Fn(usize) -> bool + use<'m>> {
-        let is_inside = match self.corners {
-            Some(corners) => Some(in_box(mcc, corners).with_context(|| self.input.display().to_string())?),
-            None => None,
-        };
-        Ok(move |refinement: usize| {
-            self.count.is_some_and(|count| refinement < count)
-                || self.error.is_some_and(|error| mcc.error(refinement) > error)
-                || is_inside.as_ref().is_some_and(|is_inside| is_inside(refinement))
-        })
+    /// The refinements that are asked for, each once.
+    fn wanted(&self, mcc: &Mcc<'_>) -> anyhow::Result<Vec<usize>> {
+        let all = 0..mcc.num_refinements();
+        let mut wanted: Vec<usize> = all.clone().take(self.count.unwrap_or(0)).collect();
+        if let Some(error) = self.error {
+            wanted.extend(all.clone().filter(|&refinement| mcc.error(refinement) > error));
+        }
+        if let Some(corners) = self.corners {
+            mcc.coordinates().context("the file has no coordinates: --box cannot be asked of it")?;
+            match mcc.in_box(corners, AxisBox::EMPTY) {
+                Some(inside) => wanted.extend(inside),
+                None => wanted.extend(all.filter(|&refinement| mcc.is_in_box(refinement, &corners) == Some(true))),
+            }
+        }
+        wanted.sort_unstable();
+        wanted.dedup();
+        Ok(wanted)
     }
 
     fn write(&self, front: &Front<'_>, format: FormatName) -> anyhow::Result<()> {
@@ -190,20 +189,6 @@ impl Args {
         }
         Ok(())
     }
-}
-
-/// Whether the site of a refinement is in a box.
-fn in_box<'m>(mcc: &'m Mcc<'_>, corners: Corners) -> anyhow::Result<impl Fn(usize) -> bool + use<'m>> {
-    let section = mcc.coordinates().context("the file has no coordinates: --box cannot be asked of it")?;
-    let components = section.components as usize;
-    let (column, axes) = (section.column, components.min(3));
-    let Corners { low, high } = corners;
-    Ok(move |refinement| {
-        let inside = |site: usize, axis: usize| {
-            column.number_at(site * components + axis).is_some_and(|value| (low[axis]..=high[axis]).contains(&value))
-        };
-        mcc.site(refinement).is_some_and(|site| (0..axes).all(|axis| inside(site, axis)))
-    })
 }
 
 /// The coordinates in a file, for another one.
@@ -263,7 +248,9 @@ impl Summary {
         let mut refinements_by_dimension = vec![0; mcc.num_dims().saturating_sub(1)];
         let refinements = 0..mcc.num_refinements();
         for refinement in refinements.clone().filter_map(|number| mcc.refinement(number)) {
-            refinements_by_dimension[refinement.dim] += 1;
+            if let Some(count) = refinements_by_dimension.get_mut(refinement.dim) {
+                *count += 1;
+            }
         }
         let errors = mcc.arrays().errors;
         Self {

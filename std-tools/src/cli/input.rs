@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
+use sig_tools::mcc::MccFile;
 use sig_tools::store::{Access, OpenError};
 use sig_tools::{Loaded, Mapped, View};
 
@@ -22,6 +23,11 @@ pub(super) struct How {
 }
 
 impl How {
+    /// Opens a multi-resolution complex, or a cell complex.
+    pub(super) fn open_mcc(&self, path: &Path) -> Result<MccFile, OpenError> {
+        if self.load { MccFile::load(path) } else { MccFile::open(path) }
+    }
+
     /// Opens `path`, which will be read as `access` says; `-` is standard input.
     pub(super) fn open(&self, path: &Path, access: Access) -> Result<Input, OpenError> {
         if self.load && path.as_os_str() != "-" {

@@ -11,15 +11,17 @@ use sig_tools::store::{Access, verify};
 use sig_tools::{View, with_view};
 
 use super::input::How;
-use super::{Silent, output, progress};
+use super::{Silent, mcc_input, output, progress};
 
 /// Check a file: header, structure, checksums, canonical order, and the relations
 ///
-/// The checks stop at the first thing that is wrong, say what and where, and the exit code is 1.
+/// Of a multi-resolution complex all refinements are applied and taken back. The checks stop at the first thing that is wrong,
+/// say what and where, and the exit code is 1.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   sig verify bunny.sigc
+  sig verify bunny.mcc               also that every refinement can be applied, and what all of them make
   sig verify bunny.sigc --rebuild    also compute the partial co-boundary relations again and compare")]
 pub(super) struct Args {
     /// The file; `-` is standard input
@@ -63,6 +65,9 @@ impl Check {
     }
 }
 
+/// Told each check that was made.
+type Tell<'t> = &'t mut dyn FnMut(Check) -> io::Result<()>;
+
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let mut report = Report { file: self.file.display().to_string(), ok: true, checks: Vec::new() };
@@ -81,18 +86,17 @@ impl Args {
     }
 
     /// Runs the checks up to the first that fails.
-    fn check(&self, tell: &mut dyn FnMut(Check) -> io::Result<()>) -> io::Result<()> {
+    fn check(&self, tell: Tell<'_>) -> io::Result<()> {
+        if mcc_input::is_one(&self.file) {
+            return self.check_mcc(tell);
+        }
         let input = match self.how.open(&self.file, Access::Sequential) {
             Ok(input) => input,
             Err(error) => return tell(Check::new("structure", Err(error.kind.to_string()))),
         };
         tell(Check::new("structure", Ok("header, section table, lengths".to_owned())))?;
-        match verify::checksums(&input.file_bytes()) {
-            Ok(blocks) => tell(Check::new("checksums", Ok(format!("{blocks} blocks"))))?,
-            Err(error @ FormatError::NoChecksums) => {
-                tell(Check { name: "checksums", status: "skipped", message: error.to_string() })?;
-            }
-            Err(error) => return tell(Check::new("checksums", Err(error.to_string()))),
+        if !check_bytes(&input.file_bytes(), tell)? {
+            return Ok(());
         }
         let view = input.view();
         if let Err(error) = with_view!(view, complex => complex.validate()) {
@@ -116,6 +120,45 @@ impl Args {
             _ => Ok(()),
         }
     }
+
+    /// The same for a multi-resolution complex, or a cell complex.
+    fn check_mcc(&self, tell: Tell<'_>) -> io::Result<()> {
+        let file = match self.how.open_mcc(&self.file) {
+            Ok(file) => file,
+            Err(error) => return tell(Check::new("structure", Err(error.kind.to_string()))),
+        };
+        tell(Check::new("structure", Ok("header, section table, lengths".to_owned())))?;
+        if !check_bytes(&file.file_bytes(), tell)? {
+            return Ok(());
+        }
+        let mcc = file.view();
+        if let Err(error) = mcc.validate() {
+            return tell(Check::new("arrays", Err(error.to_string())));
+        }
+        let arrays = "arcs, dependencies on earlier refinements only, errors, sites";
+        tell(Check::new("arrays", Ok(arrays.to_owned())))?;
+        let num = mcc.num_refinements();
+        let made = sig_tools::mcc::verify(mcc).map(|euler| match num {
+            0 => format!("boundaries of boundaries are zero, Euler characteristic {euler}"),
+            _ => format!("all {} applied and taken back, Euler characteristic {euler}", output::grouped(num)),
+        });
+        tell(Check::new(if num == 0 { "complex" } else { "fronts" }, made.map_err(|error| error.to_string())))
+    }
+}
+
+/// Whether the checksums are right, or there are none.
+fn check_bytes(bytes: &[u8], tell: Tell<'_>) -> io::Result<bool> {
+    match verify::checksums(bytes) {
+        Ok(blocks) => tell(Check::new("checksums", Ok(format!("{blocks} blocks"))))?,
+        Err(error @ FormatError::NoChecksums) => {
+            tell(Check { name: "checksums", status: "skipped", message: error.to_string() })?;
+        }
+        Err(error) => {
+            tell(Check::new("checksums", Err(error.to_string())))?;
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn rebuild(complex: AnyComplex<'_>) -> Result<(), verify::RebuildError> {

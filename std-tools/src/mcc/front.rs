@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use sig_core::mcc::{Mcc, RefinementView};
+use sig_core::mcc::{AxisBox, Mcc, RefinementView};
 use sig_core::{CellId, mark_words};
 
 use super::record::MultiResolution;
@@ -11,13 +11,21 @@ use crate::cells::{CellComplex, Infeasible, Refinement};
 
 /// The complex after a closed set of refinements (mcc-2012, 6). Its cells have the numbers of the multi-resolution complex.
 ///
-/// It moves to another closed set by the refinements in which the two differ.
+/// A front knows which refinements are wanted, and has these and what they depend on, no more: each refinement that is applied
+/// is wanted, or another one that is applied depends on it. It counts these uses, so that it moves by the refinements in which
+/// the two sets differ, and in time that depends on them alone.
+///
+/// Memory: that of the complex, four bytes and two bits for each refinement, and 12 bytes for each cell of the full complex.
 #[derive(Clone, Debug)]
 pub struct Front<'a> {
     mcc: Mcc<'a>,
     complex: CellComplex,
     /// A bit for each refinement that is applied.
-    applied: Vec<u64>,
+    applied: Vec<u32>,
+    /// A bit for each refinement that is wanted.
+    wanted: Vec<u32>,
+    /// For each refinement, how many arcs of others that are applied lead to its cells, and one more if it is wanted.
+    uses: Vec<u32>,
     refinement: Refinement,
 }
 
@@ -40,22 +48,30 @@ pub struct BadRefinement {
     pub error: Infeasible,
 }
 
+/// Bits a word of marks.
+const BITS: usize = u32::BITS as usize;
+
+fn has(marks: &[u32], refinement: usize) -> bool {
+    marks.get(refinement / BITS).is_some_and(|word| word >> (refinement % BITS) & 1 == 1)
+}
+
+/// The numbers of the bits that are set in one word.
+fn bits(number: usize, word: u32) -> impl Iterator<Item = usize> {
+    let next = |left: &u32| Some(left & (left - 1)).filter(|&left| left != 0);
+    std::iter::successors(Some(word).filter(|&word| word != 0), next)
+        .map(move |left| number * BITS + left.trailing_zeros() as usize)
+}
+
 impl<'a> Front<'a> {
     /// The base complex. Cost: its cells, and 12 bytes for each cell of the full complex.
     ///
-    /// A file of unknown origin should be [validated](Mcc::validate) first: on what that refuses, a front may panic.
+    /// The base of a file of unknown origin should be [validated](Mcc::validate_base) first: on what that refuses, a front may
+    /// panic. Refinements are checked when they are applied.
     #[must_use]
     pub fn new(mcc: Mcc<'a>) -> Self {
-        let base = narrow(mcc.num_base_cells());
-        let dims = (0..base).map(|cell| mcc.dim_of(CellId::new(cell)).unwrap_or(0));
-        let mut complex = CellComplex::lay_out(dims, |cell, visit| {
-            // Arcs of a damaged file to cells that come later are none.
-            let cell = CellId::new(cell);
-            mcc.base_boundary(cell).filter(|arc| arc.cell < cell).for_each(visit);
-        });
-        complex.reserve_ids(mcc.num_cells());
-        let applied = vec![0; mark_words(mcc.num_refinements())];
-        Self { mcc, complex, applied, refinement: Refinement::default() }
+        let marks = vec![0; mark_words(mcc.num_refinements())];
+        let (wanted, uses) = (marks.clone(), vec![0; mcc.num_refinements()]);
+        Self { mcc, complex: base(&mcc), applied: marks, wanted, uses, refinement: Refinement::default() }
     }
 
     /// The complex.
@@ -73,7 +89,13 @@ impl<'a> Front<'a> {
     /// Whether a refinement is applied.
     #[must_use]
     pub fn is_applied(&self, refinement: usize) -> bool {
-        self.applied.get(refinement / 64).is_some_and(|word| word >> (refinement % 64) & 1 == 1)
+        has(&self.applied, refinement)
+    }
+
+    /// Whether a refinement was asked for, not only what depends on it.
+    #[must_use]
+    pub fn is_wanted(&self, refinement: usize) -> bool {
+        has(&self.wanted, refinement)
     }
 
     /// The number of refinements that are applied.
@@ -82,43 +104,131 @@ impl<'a> Front<'a> {
         self.applied.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// Moves to the least closed set with all refinements that are wanted.
+    /// Moves to the least closed set with all refinements that are wanted, by a predicate.
     ///
-    /// Cost: a call for each refinement, [`Mcc::close`], and an operator for each refinement that is applied or taken back.
+    /// Cost: a call for each refinement, whether it comes to be applied or not, and that of [`change`](Self::change).
     ///
     /// # Errors
-    /// [`BadRefinement`] for a file that [`Mcc::validate`] does not accept, or that was made by another program; the front is
-    /// then at a resolution between.
+    /// As [`change`](Self::change).
     pub fn select(&mut self, is_wanted: impl FnMut(usize) -> bool) -> Result<Moved, BadRefinement> {
-        let mut marks = vec![0; self.applied.len()];
+        let mut marks = vec![0; self.wanted.len()];
         self.mcc.select(&mut marks, is_wanted);
-        self.move_to(&mut marks)
+        self.move_to(&marks)
     }
 
-    /// Moves to the least closed set with the refinements that are marked, a bit each, to which it adds the others.
+    /// Moves to the least closed set with the refinements that are marked, a bit each.
+    ///
+    /// Cost: a look at each word of marks, and that of [`change`](Self::change).
     ///
     /// # Errors
-    /// As [`select`](Self::select).
-    pub fn move_to(&mut self, marks: &mut [u64]) -> Result<Moved, BadRefinement> {
-        self.mcc.close(marks);
-        let mut moved = Moved::default();
-        // The last first: what depends on others goes before them.
-        for word in (0..self.applied.len()).rev() {
-            let wanted = marks.get(word).copied().unwrap_or(0);
-            while let Some(bit) = (self.applied[word] & !wanted).checked_ilog2() {
-                self.coarsen(word * 64 + bit as usize)?;
-                moved.coarsened += 1;
+    /// As [`change`](Self::change).
+    pub fn move_to(&mut self, marks: &[u32]) -> Result<Moved, BadRefinement> {
+        let differing = |is_more: bool| {
+            let pairs = self.wanted.iter().zip(marks.iter().chain(std::iter::repeat(&0)));
+            let words = pairs.map(move |(&old, &new)| if is_more { new & !old } else { old & !new });
+            words.enumerate().flat_map(|(number, word)| bits(number, word)).collect::<Vec<_>>()
+        };
+        let (more, fewer) = (differing(true), differing(false));
+        self.change(more, fewer)
+    }
+
+    /// Moves from one box to another: to the least closed set with the refinements whose sites are in it, if those in the other
+    /// one are what is wanted now.
+    ///
+    /// Cost: that of [`Mcc::in_box`] for what is in one of them only, and of [`change`](Self::change). Without a tree over the sites
+    /// in the file, that of [`select`](Self::select).
+    ///
+    /// # Errors
+    /// As [`change`](Self::change).
+    pub fn move_box(&mut self, from: AxisBox, to: AxisBox) -> Result<Moved, BadRefinement> {
+        let mcc = self.mcc;
+        match (mcc.in_box(to, from), mcc.in_box(from, to)) {
+            (Some(more), Some(fewer)) => self.change(more, fewer),
+            _ => self.select(|refinement| mcc.is_in_box(refinement, &to) == Some(true)),
+        }
+    }
+
+    /// Wants some refinements more, and some not any more, and moves to the least closed set with all that are wanted then.
+    ///
+    /// Cost: the arcs of the refinements that are applied or taken back, and an operator for each; to sort those that are applied.
+    ///
+    /// # Errors
+    /// [`BadRefinement`] where a file is damaged, or was made by another program and is none; the front is the base complex then.
+    pub fn change(
+        &mut self,
+        more: impl IntoIterator<Item = usize>,
+        fewer: impl IntoIterator<Item = usize>,
+    ) -> Result<Moved, BadRefinement> {
+        let moved = self.try_change(more, fewer);
+        if moved.is_err() {
+            *self = Self::new(self.mcc);
+        }
+        moved
+    }
+
+    fn try_change(
+        &mut self,
+        more: impl IntoIterator<Item = usize>,
+        fewer: impl IntoIterator<Item = usize>,
+    ) -> Result<Moved, BadRefinement> {
+        let mut new = self.demand(more);
+        // Increasing order is feasible, and that of the arcs in the file.
+        new.sort_unstable();
+        new.iter().try_for_each(|&refinement| self.refine(refinement as usize))?;
+        let coarsened = self.drop_unused(fewer)?;
+        Ok(Moved { refined: new.len(), coarsened })
+    }
+
+    /// Wants some refinements, and returns those of the least closed set with them that are not applied yet; they count as
+    /// applied from here on.
+    fn demand(&mut self, more: impl IntoIterator<Item = usize>) -> Vec<u32> {
+        let mut new = Vec::new();
+        for refinement in more {
+            if refinement >= self.uses.len() || self.is_wanted(refinement) {
+                continue;
+            }
+            self.wanted[refinement / BITS] |= 1 << (refinement % BITS);
+            let mut next = new.len();
+            self.use_one(refinement, &mut new);
+            while let Some(&number) = new.get(next) {
+                next += 1;
+                for dependency in self.mcc.dependencies(number as usize) {
+                    self.use_one(dependency, &mut new);
+                }
             }
         }
-        for word in 0..self.applied.len() {
-            let wanted = marks.get(word).copied().unwrap_or(0);
-            while wanted & !self.applied[word] != 0 {
-                let bit = (wanted & !self.applied[word]).trailing_zeros();
-                self.refine(word * 64 + bit as usize)?;
-                moved.refined += 1;
+        new
+    }
+
+    /// Counts a use of a refinement, which is new if it is not applied.
+    fn use_one(&mut self, refinement: usize, new: &mut Vec<u32>) {
+        self.uses[refinement] += 1;
+        let (word, bit) = (&mut self.applied[refinement / BITS], 1 << (refinement % BITS));
+        if *word & bit == 0 {
+            *word |= bit;
+            new.push(narrow(refinement));
+        }
+    }
+
+    /// Takes back what is neither wanted any more nor used; returns how many that are.
+    fn drop_unused(&mut self, fewer: impl IntoIterator<Item = usize>) -> Result<usize, BadRefinement> {
+        let (mut unused, mut coarsened) = (Vec::new(), 0);
+        for refinement in fewer {
+            if !self.is_wanted(refinement) {
+                continue;
+            }
+            self.wanted[refinement / BITS] &= !(1 << (refinement % BITS));
+            unused.push(refinement);
+            while let Some(refinement) = unused.pop() {
+                self.uses[refinement] -= 1;
+                if self.uses[refinement] == 0 {
+                    self.coarsen(refinement)?;
+                    coarsened += 1;
+                    unused.extend(self.mcc.dependencies(refinement));
+                }
             }
         }
-        Ok(moved)
+        Ok(coarsened)
     }
 
     /// Applies a refinement, of which all dependencies are applied.
@@ -126,9 +236,7 @@ impl<'a> Front<'a> {
         let bad = |error| BadRefinement { refinement: number, error };
         let view = self.mcc.refinement(number).ok_or(bad(Infeasible::NoSuchCell(CellId::new(0))))?;
         copy(view, &mut self.refinement);
-        self.complex.make(&self.refinement).map_err(bad)?;
-        self.applied[number / 64] |= 1 << (number % 64);
-        Ok(())
+        self.complex.make(&self.refinement).map_err(bad)
     }
 
     /// Takes a refinement back, on which no other one that is applied depends.
@@ -136,7 +244,7 @@ impl<'a> Front<'a> {
         let bad = |error| BadRefinement { refinement: number, error };
         let view = self.mcc.refinement(number).ok_or(bad(Infeasible::NoSuchCell(CellId::new(0))))?;
         self.complex.kill_into(view.low, view.high, &mut self.refinement).map_err(bad)?;
-        self.applied[number / 64] &= !(1 << (number % 64));
+        self.applied[number / BITS] &= !(1 << (number % BITS));
         Ok(())
     }
 
@@ -182,19 +290,35 @@ fn copy(view: RefinementView<'_>, refinement: &mut Refinement) {
     view.lists.into_iter().enumerate().for_each(|(part, list)| refinement.extend(part, list));
 }
 
-/// Applies refinements of a closed set to a base complex one by one, in any feasible order.
+/// The base complex of a multi-resolution complex, with room for all cells.
+fn base(mcc: &Mcc<'_>) -> CellComplex {
+    let base = narrow(mcc.num_base_cells());
+    let dims = (0..base).map(|cell| mcc.dim_of(CellId::new(cell)).unwrap_or(0));
+    let mut complex = CellComplex::lay_out(dims, |cell, visit| {
+        // Arcs of a damaged file to cells that come later are none.
+        let cell = CellId::new(cell);
+        mcc.base_boundary(cell).filter(|arc| arc.cell < cell).for_each(visit);
+    });
+    complex.reserve_ids(mcc.num_cells());
+    complex
+}
+
+/// Applies refinements of a closed set to a base complex one by one, in any feasible order. All of them are wanted then.
 ///
 /// # Errors
 /// [`BadRefinement`]: the first that cannot be applied, because one on which it depends comes later, or is missing.
 pub fn apply_in_order<'a>(mcc: Mcc<'a>, order: &[usize]) -> Result<Front<'a>, BadRefinement> {
     let mut front = Front::new(mcc);
-    order.iter().try_for_each(|&refinement| front.refine(refinement))?;
+    for &refinement in order {
+        front.refine(refinement)?;
+        front.demand([refinement]);
+    }
     Ok(front)
 }
 
 /// The refinements of a closed set, in the order of [`Mcc::stream`].
 #[must_use]
-pub fn members(mcc: &Mcc<'_>, marks: &[u64]) -> Vec<usize> {
+pub fn members(mcc: &Mcc<'_>, marks: &[u32]) -> Vec<usize> {
     let mut members = Vec::new();
     let all = mcc.stream(marks, |refinement| {
         members.push(refinement.number);

@@ -24,7 +24,9 @@ mod front;
 mod picture;
 mod record;
 mod simplify;
+mod site_tree;
 mod store;
+mod verify;
 
 pub use criterion::{Criterion, Extent, Field, Free, Length, Pair};
 pub use front::{BadRefinement, Front, Moved, apply_in_order, members};
@@ -32,3 +34,4 @@ pub use picture::{DrawError, Drawing, ViewAxis};
 pub use record::MultiResolution;
 pub use simplify::{SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
 pub use store::{MccFile, write_mcc};
+pub use verify::{BrokenMcc, verify};

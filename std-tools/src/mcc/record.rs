@@ -43,6 +43,8 @@ impl MultiResolution {
             splits: &self.splits,
             errors: &self.errors,
             sites: &self.sites,
+            // In memory there are no coordinates: those who write a file have them.
+            site_tree: &[],
         }
     }
 

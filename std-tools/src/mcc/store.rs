@@ -1,6 +1,8 @@
 //! Files of multi-resolution complexes, and of cell complexes: writing, and loading.
 
-use std::io::{self, Write};
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use memmap2::Mmap;
@@ -9,6 +11,7 @@ use sig_core::format::{Column, Encoder, FormatError, Kind, Section, SectionKind}
 use sig_core::mcc::Mcc;
 
 use super::record::MultiResolution;
+use super::site_tree::site_tree;
 use crate::soup::{Coordinates, Scalars};
 use crate::store::{AlignedBytes, OpenError, OpenErrorKind, crc32, map_file};
 
@@ -22,6 +25,7 @@ pub fn write_mcc(
     coordinates: Option<&Coordinates>,
     out: &mut (impl Write + ?Sized),
 ) -> io::Result<()> {
+    let site_tree = coordinates.map_or_else(Vec::new, |coordinates| site_tree(&complex.sites, coordinates));
     let coordinates = coordinates.map(|coordinates| {
         let column = match &coordinates.values {
             Scalars::F32(values) => Column::F32(values),
@@ -49,6 +53,9 @@ pub fn write_mcc(
             Section::new(SectionKind::RefinementErrors, Column::F32(&complex.errors)),
             words(SectionKind::RefinementSites, &complex.sites),
         ]);
+        if !site_tree.is_empty() {
+            sections.push(words(SectionKind::SiteTree, &site_tree));
+        }
     }
     let (dims, cells) = (complex.lookup.len(), complex.origins.len() as u64);
     let invalid = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
@@ -79,13 +86,32 @@ impl MccFile {
         let path = path.as_ref();
         let wrong = |kind| OpenError::new(path, kind);
         if cfg!(target_endian = "big") {
-            let mut file = std::fs::File::open(path).map_err(|error| wrong(OpenErrorKind::Io(error)))?;
-            let bytes = AlignedBytes::read(&mut file, 0).map_err(|error| wrong(OpenErrorKind::Io(error)))?;
-            return Self::from_file_bytes(bytes).map_err(|error| wrong(OpenErrorKind::Format(error)));
+            return Self::load(path);
         }
         let map = map_file(path)?;
         Mcc::from_bytes(&map).map_err(|error| wrong(OpenErrorKind::Format(error)))?;
         Ok(Self { bytes: Bytes::Mapped(map) })
+    }
+
+    /// Loads the file at `path` into memory, for one that another program may write into while it is used. Cost: reading it.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, OpenError> {
+        let path = path.as_ref();
+        let wrong = |kind| OpenError::new(path, kind);
+        let mut file = File::open(path).map_err(|error| wrong(OpenErrorKind::Io(error)))?;
+        Self::read(&mut file, path)
+    }
+
+    /// Reads a file from a stream that is called `path` in errors.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn read(reader: &mut impl Read, path: &Path) -> Result<Self, OpenError> {
+        let wrong = |kind| OpenError::new(path, kind);
+        let bytes = AlignedBytes::read(reader, 0).map_err(|error| wrong(OpenErrorKind::Io(error)))?;
+        Self::from_file_bytes(bytes).map_err(|error| wrong(OpenErrorKind::Format(error)))
     }
 
     /// The complex in the bytes of a file as it lies on disk.
@@ -107,6 +133,18 @@ impl MccFile {
     #[must_use]
     pub fn view(&self) -> Mcc<'_> {
         Mcc::from_bytes(self.bytes()).expect("a mapped file was changed by another program")
+    }
+
+    /// The bytes as they lie on disk.
+    #[must_use]
+    #[expect(clippy::missing_panics_doc, reason = "bytes that were opened can be swapped back")]
+    pub fn file_bytes(&self) -> Cow<'_, [u8]> {
+        if cfg!(target_endian = "big") {
+            let mut bytes = AlignedBytes::from(self.bytes());
+            sig_core::format::swap_byte_order(&mut bytes).expect("bytes that were swapped once");
+            return Cow::Owned(bytes.to_vec());
+        }
+        Cow::Borrowed(self.bytes())
     }
 
     /// The bytes in memory, in the host's byte order.

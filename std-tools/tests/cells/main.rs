@@ -4,6 +4,7 @@
 #![allow(clippy::cast_possible_truncation)]
 
 mod betti;
+mod fronts;
 mod mcc;
 mod model;
 mod operators;

@@ -20,13 +20,13 @@ use crate::operators::complex;
 use crate::samples::{kuhn_grid, simplices, soup, soup_of, torus};
 
 /// Points that are not in order.
-fn coordinates(vertices: usize) -> Coordinates {
+pub(crate) fn coordinates(vertices: usize) -> Coordinates {
     let values = (0..3 * vertices).map(|at| ((at * 7919 + 13) % 101) as f64).collect();
     Coordinates { dim: 3, values: Scalars::F64(values) }
 }
 
 /// Simplifies by one of the criteria.
-fn simplified(full: &CellComplex, which: usize, strategy: Order, types: Types) -> MultiResolution {
+pub(crate) fn simplified(full: &CellComplex, which: usize, strategy: Order, types: Types) -> MultiResolution {
     let options = SimplifyOptions { strategy, types, ..Default::default() };
     let coordinates = coordinates(full.counts().first().copied().unwrap_or(0));
     match which {
@@ -38,7 +38,7 @@ fn simplified(full: &CellComplex, which: usize, strategy: Order, types: Types) -
     .0
 }
 
-fn in_bytes(complex: &MultiResolution, coordinates: Option<&Coordinates>) -> AlignedBytes {
+pub(crate) fn in_bytes(complex: &MultiResolution, coordinates: Option<&Coordinates>) -> AlignedBytes {
     let mut bytes = Vec::new();
     write_mcc(complex, coordinates, &mut bytes).unwrap();
     AlignedBytes::read(&mut &bytes[..], bytes.len()).unwrap()
@@ -67,7 +67,7 @@ fn renamed(full: &CellComplex, mcc: &Mcc<'_>) -> Model {
 }
 
 /// The definition: everything that can be reached along direct dependencies.
-fn closure(mcc: &Mcc<'_>, wanted: &BTreeSet<usize>) -> BTreeSet<usize> {
+pub(crate) fn closure(mcc: &Mcc<'_>, wanted: &BTreeSet<usize>) -> BTreeSet<usize> {
     let mut closed = BTreeSet::new();
     let mut open: Vec<usize> = wanted.iter().copied().collect();
     while let Some(refinement) = open.pop() {

@@ -6,28 +6,41 @@
 //! them. Refinements are numbered so that each depends on earlier ones only; increasing order is one of the feasible
 //! sequences.
 //!
-//! A selection is a bit for each refinement, in memory of the caller's. [`close`](Mcc::close) adds what the chosen ones depend
-//! on, which gives the least closed set, and [`stream`](Mcc::stream) hands the refinements of a set over in a feasible order.
+//! What is asked for makes a least closed set of refinements, in memory of the caller's. There are two ways to it, which differ
+//! in what they cost:
+//!
+//! | what is asked for | set | cost |
+//! |---|---|---|
+//! | any predicate, asked of each refinement | [`select`](Mcc::select), [`close`](Mcc::close), [`stream`](Mcc::stream): a bit for each refinement | that of all refinements |
+//! | some refinements by number, as those in a [box](Mcc::in_box) | [`closed_set`](Mcc::closed_set): a list | that of the refinements in the set |
+//!
+//! One file each: `closure` has these, `sites` finds the refinements in a box, `validate` checks the arrays.
 //!
 //! ```
-//! use sig_core::{mark_words, mcc::Mcc};
+//! use sig_core::mcc::{AxisBox, Mcc};
+//! use sig_core::{Scratch, ScratchError};
 //!
-//! /// How many cells the complex with an error of at most `error` has.
-//! fn cells_at(mcc: &Mcc<'_>, error: f32, marks: &mut [u64]) -> Option<usize> {
-//!     mcc.select(marks, |refinement| mcc.error(refinement) > error)?;
-//!     let applied = mcc.close(marks)?;
-//!     // `mcc.stream(marks, |refinement| …)` would make the complex itself.
-//!     Some(mcc.num_base_cells() + 2 * applied)
+//! /// How many cells the complex has that is as fine as can be in a box, and as coarse as can be elsewhere.
+//! fn cells_in(mcc: &Mcc<'_>, inside: AxisBox, scratch: &mut Scratch<'_, u32>) -> Result<Option<usize>, ScratchError> {
+//!     let Some(wanted) = mcc.in_box(inside, AxisBox::EMPTY) else { return Ok(None) };
+//!     let applied = mcc.closed_set(wanted, scratch)?;
+//!     // `mcc.refinement(number)` for each of them, in this order, would make the complex itself.
+//!     Ok(Some(mcc.num_base_cells() + 2 * applied.len()))
 //! }
-//! # let _ = (cells_at, mark_words(1));
+//! # let _ = cells_in;
 //! ```
 
-use core::ops::{ControlFlow, Range};
+mod closure;
+mod sites;
+mod validate;
+
+use core::ops::Range;
 
 use crate::cell::{Arc, CellId, Incidence, PackedArc};
 use crate::format::{Column, Container, FormatError, Kind, Rule, Section, SectionKind};
 use crate::id::{Dim, IndexWidth, MAX_DIM};
-use crate::scratch::mark_words;
+
+pub use sites::{AxisBox, InBox};
 
 /// The arrays of a multi-resolution cell complex, as a file has them. b is the number of base cells, m that of refinements.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,6 +65,8 @@ pub struct MccArrays<'a> {
     pub errors: &'a [f32],
     /// The sites: m, or none.
     pub sites: &'a [u32],
+    /// The refinements as a tree over their sites: m, or none. See [`Mcc::in_box`].
+    pub site_tree: &'a [u32],
 }
 
 /// What `splits` holds if a length takes more than ten bits.
@@ -107,6 +122,16 @@ pub struct RefinementView<'a> {
 pub struct Arcs<'a> {
     arrays: MccArrays<'a>,
     range: Range<usize>,
+}
+
+impl<'a> Arcs<'a> {
+    /// The arcs as they are stored.
+    #[must_use]
+    #[inline]
+    pub fn packed(&self) -> impl ExactSizeIterator<Item = PackedArc> + DoubleEndedIterator + Clone + use<'a> {
+        let words = self.arrays.arcs.get(self.range.clone()).unwrap_or(&[]);
+        words.iter().map(|&word| PackedArc::from_word(word))
+    }
 }
 
 impl Iterator for Arcs<'_> {
@@ -183,6 +208,7 @@ impl<'a> Mcc<'a> {
             arrays.offsets = words(SectionKind::RefinementOffsets)?;
             arrays.splits = words(SectionKind::RefinementSplits)?;
             arrays.sites = optional(SectionKind::RefinementSites)?;
+            arrays.site_tree = optional(SectionKind::SiteTree)?;
             arrays.shapes = match container.section(SectionKind::RefinementShapes) {
                 Some(Section { column: Column::U8(shapes), .. }) => shapes,
                 _ => return Err(FormatError::MissingSection(SectionKind::RefinementShapes)),
@@ -205,7 +231,8 @@ impl<'a> Mcc<'a> {
     /// # Errors
     /// [`FormatError::Invalid`] if their lengths do not fit.
     pub fn new(arrays: MccArrays<'a>) -> Result<Self, FormatError> {
-        let MccArrays { lookup, base_offsets, offsets, shapes, splits, errors, sites, origins, large, .. } = arrays;
+        let MccArrays { lookup, base_offsets, offsets, shapes, splits, errors, sites, site_tree, .. } = arrays;
+        let MccArrays { origins, large, .. } = arrays;
         let invalid = |section, element: usize, rule| FormatError::Invalid { section, element: element as u64, rule };
         let base = base_offsets.len().checked_sub(1);
         let base = base.ok_or(invalid(SectionKind::BaseOffsets, 0, Rule::ArcOffset))?;
@@ -228,6 +255,9 @@ impl<'a> Mcc<'a> {
         }
         if !sites.is_empty() && sites.len() != num {
             return Err(invalid(SectionKind::RefinementSites, sites.len(), Rule::Origin));
+        }
+        if !site_tree.is_empty() && site_tree.len() != sites.len() {
+            return Err(invalid(SectionKind::SiteTree, site_tree.len(), Rule::SiteTree));
         }
         let cells = num.checked_mul(2).and_then(|made| made.checked_add(base)).filter(|&cells| cells <= CellId::LIMIT);
         if cells != Some(origins.len()) {
@@ -373,137 +403,19 @@ impl<'a> Mcc<'a> {
     /// it connects to one of its two.
     pub fn dependencies(&self, refinement: usize) -> impl Iterator<Item = usize> + use<'a> {
         let mcc = *self;
-        let lists = self.refinement(refinement).map(|refinement| refinement.lists);
-        let arcs = lists.into_iter().flatten().flatten();
+        let arcs = self.all_arcs(refinement).iter();
         // Only a damaged file has later ones; without them, every closure ends.
-        arcs.filter_map(move |arc| mcc.creator(arc.cell)).filter(move |&creator| creator < refinement)
+        let creator = move |&word: &u32| mcc.creator(PackedArc::from_word(word).cell());
+        arcs.filter_map(creator).filter(move |&creator| creator < refinement)
     }
 
-    /// Sets the marks of the refinements that are wanted, and clears the others. `None` if there are fewer than
-    /// [`mark_words`]`(m)` words of marks.
-    ///
-    /// Cost: a call for each refinement.
-    pub fn select(&self, marks: &mut [u64], mut is_wanted: impl FnMut(usize) -> bool) -> Option<()> {
-        let marks = marks.get_mut(..mark_words(self.num_refinements()))?;
-        marks.fill(0);
-        for refinement in 0..self.num_refinements() {
-            if let Some(word) = marks.get_mut(refinement / 64) {
-                *word |= u64::from(is_wanted(refinement)) << (refinement % 64);
-            }
-        }
-        Some(())
-    }
-
-    /// Adds to a set all refinements on which those in it depend: the result is the least closed set with them. Returns its
-    /// size; `None` if there are too few marks.
-    ///
-    /// Cost: the arcs of the refinements in the result, and a look at each word of marks.
-    pub fn close(&self, marks: &mut [u64]) -> Option<usize> {
-        let words = mark_words(self.num_refinements());
-        let marks = marks.get_mut(..words)?;
-        let mut size = 0;
-        for word in (0..words).rev() {
-            // Dependencies come before what depends on them, so those of a word may be in it, below the one at hand.
-            let mut done = 0;
-            loop {
-                let left = marks.get(word).copied().unwrap_or(0) & !done;
-                let Some(bit) = left.checked_ilog2() else { break };
-                done |= 1 << bit;
-                size += 1;
-                for dependency in self.dependencies(word * 64 + bit as usize) {
-                    if let Some(word) = marks.get_mut(dependency / 64) {
-                        *word |= 1 << (dependency % 64);
-                    }
-                }
-            }
-        }
-        Some(size)
-    }
-
-    /// Hands over the refinements of a closed set in a feasible order, until `visit` breaks. `None` if there are too few marks.
-    ///
-    /// Cost: O(1) for each, and a look at each word of marks.
-    pub fn stream<B>(
-        &self,
-        marks: &[u64],
-        mut visit: impl FnMut(RefinementView<'a>) -> ControlFlow<B>,
-    ) -> Option<ControlFlow<B>> {
-        let marks = marks.get(..mark_words(self.num_refinements()))?;
-        for (word, &bits) in marks.iter().enumerate() {
-            let mut left = bits;
-            while left != 0 {
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
-                if let Some(refinement) = self.refinement(word * 64 + bit)
-                    && let ControlFlow::Break(value) = visit(refinement)
-                {
-                    return Some(ControlFlow::Break(value));
-                }
-            }
-        }
-        Some(ControlFlow::Continue(()))
-    }
-
-    /// Checks every array: offsets, dimensions, order, incidences, that refinements depend on earlier ones only, and errors.
-    ///
-    /// Not checked: that boundaries of boundaries are zero, and that a refinement is feasible; a front says so when it is made.
-    ///
-    /// Cost: linear.
-    ///
-    /// # Errors
-    /// [`FormatError::Invalid`]: the first element that is wrong.
-    pub fn validate(&self) -> Result<(), FormatError> {
-        let invalid = |section, element: usize, rule| FormatError::Invalid { section, element: element as u64, rule };
-        let mut end = 0;
-        for (row, &offset) in self.arrays.base_offsets.iter().chain(self.arrays.offsets).enumerate() {
-            if offset < end || row == 0 && offset != 0 || offset as usize > self.arrays.arcs.len() {
-                return Err(invalid(SectionKind::BaseOffsets, row, Rule::ArcOffset));
-            }
-            end = offset;
-        }
-        if end as usize != self.arrays.arcs.len() {
-            return Err(invalid(SectionKind::CellArcs, end as usize, Rule::ArcOffset));
-        }
-        for number in (0..).take(self.num_base_cells()) {
-            let cell = CellId::new(number);
-            let dim = self.dim_of(cell).and_then(|dim| dim.checked_sub(1));
-            self.validate_arcs(self.base_boundary(cell), dim, self.num_base_cells())?;
-        }
-        for number in 0..self.num_refinements() {
-            let Some(refinement) = self.refinement(number) else { break };
-            if self.site(number).is_some_and(|site| site >= self.num_cells()) {
-                return Err(invalid(SectionKind::RefinementSites, number, Rule::Origin));
-            }
-            if refinement.dim + 1 >= self.num_dims() {
-                return Err(invalid(SectionKind::RefinementShapes, number, Rule::Shape));
-            }
-            for (place, list) in refinement.lists.into_iter().enumerate() {
-                let dim = (refinement.dim + place).checked_sub(1);
-                self.validate_arcs(list, dim, refinement.low.index())?;
-            }
-            let error = self.error(number);
-            if error.is_nan() || self.dependencies(number).any(|before| self.error(before) < error) {
-                return Err(invalid(SectionKind::RefinementErrors, number, Rule::ErrorOrder));
-            }
-        }
-        Ok(())
-    }
-
-    fn validate_arcs(&self, arcs: Arcs<'_>, dim: Option<Dim>, limit: usize) -> Result<(), FormatError> {
-        let mut before = None;
-        let start = arcs.range.start;
-        for (place, Arc { cell, incidence }) in arcs.enumerate() {
-            let is_arc = cell.index() < limit
-                && dim.is_some()
-                && self.dim_of(cell) == dim
-                && before.replace(cell) < Some(cell)
-                && incidence.multiplicity > 0
-                && incidence.is_consistent();
-            if !is_arc {
-                let element = (start + place) as u64;
-                return Err(FormatError::Invalid { section: SectionKind::CellArcs, element, rule: Rule::Arc });
-            }
-        }
-        Ok(())
+    /// The arcs of a refinement, of all four lists.
+    fn all_arcs(&self, refinement: usize) -> &'a [u32] {
+        let Arcs { range, .. } = self.arcs(self.arrays.offsets, refinement);
+        let skipped = match self.arrays.splits.get(refinement) {
+            Some(&LONG_SPLITS) => 3,
+            _ => 0,
+        };
+        self.arrays.arcs.get(range.start.saturating_add(skipped)..range.end).unwrap_or(&[])
     }
 }
