@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 
 use crate::complex::SimplexRange;
 use crate::complex::columns::Labels;
-use crate::format::{Column, Section};
+use crate::format::{Column, Container, Section};
 use crate::id::{Dim, Index, SimplexId, VertexId};
 use crate::relations::Simplices;
 use crate::scratch::{Scratch, ScratchError};
@@ -323,6 +323,9 @@ pub trait Relations {
     /// The coordinates of the vertices.
     fn coordinates(&self) -> Option<Section<'_>>;
 
+    /// The file that the complex lies in.
+    fn container(&self) -> &Container<'_>;
+
     /// The orientations of the top simplices, where they are stored.
     fn parity(&self) -> Option<Column<'_>>;
 
@@ -390,6 +393,7 @@ macro_rules! impl_relations {
                 is_top(simplex: SimplexId) -> bool;
                 labels() -> Labels<'_>;
                 coordinates() -> Option<Section<'_>>;
+                container() -> &Container<'_>;
                 parity() -> Option<Column<'_>>;
                 filtration() -> Option<&[f64]>;
             }

@@ -1,6 +1,7 @@
 //! Facets from the simplex tree: facet i of a child with last vertex y is the child y of facet i of its parent, so they
 //! follow level by level from the child offsets, without a table of faces.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
@@ -26,43 +27,92 @@ pub(super) fn fill<I: Index, L: Index>(
     let (parents, children) = (arrays.ids(dim - 1), arrays.ids(dim));
     let below: usize = (1..dim - 1).map(|p| arrays.ids(p).len() * (p + 1)).sum();
     let (lower, boundary) = arrays.boundary.split_at_mut(below + parents.len() * dim);
-    let parent_rows = &lower[below..];
-    let mut boundary = &mut boundary[..children.len() * (dim + 1)];
-    let child_offsets = &arrays.child_offsets;
-    let mut tasks = Vec::new();
-    for start in parents.clone().step_by(PARENTS) {
-        let family = start..parents.end.min(start + PARENTS);
-        let count = child_offsets[family.end].to_usize() - child_offsets[family.start].to_usize();
-        tasks.push((family, boundary.split_off_mut(..count * (dim + 1)).unwrap_or_default()));
-    }
-    let children_of = |id: usize| child_offsets[id].to_usize()..child_offsets[id + 1].to_usize();
-    tasks.into_par_iter().try_for_each(|(family, rows)| {
-        let mut rows = rows;
-        for parent in family {
-            let siblings = children_of(parent);
-            if siblings.is_empty() {
-                continue;
-            }
-            let labels = &last_vertices[siblings.clone()];
-            let rows = rows.split_off_mut(..labels.len() * (dim + 1)).unwrap_or_default();
-            let facets = &parent_rows[(parent - parents.start) * dim..][..count];
-            for (i, facet) in facets.iter().enumerate() {
-                // All labels are among the candidates' labels, and both increase.
-                let mut candidates = children_of(facet.to_usize());
-                for (number, (label, row)) in labels.iter().zip(rows.chunks_exact_mut(dim + 1)).enumerate() {
-                    candidates.start += seek(&last_vertices[candidates.clone()], label);
-                    if candidates.is_empty() || last_vertices[candidates.start] != *label {
-                        return Err(siblings.start + number);
-                    }
-                    row[i] = index(candidates.start);
-                    if let Some(found) = found.get(candidates.start.wrapping_sub(parents.start)) {
-                        mark(found);
-                    }
+    let rows = &mut boundary[..children.len() * (dim + 1)];
+    let first = parents.start;
+    let families =
+        Families { child_offsets: &arrays.child_offsets, last_vertices, parents, parent_rows: &lower[below..] };
+    families.fill(dim, count, rows, &|facet| {
+        if let Some(found) = found.get(facet.wrapping_sub(first)) {
+            mark(found);
+        }
+    })
+}
+
+/// The simplices of one dimension, with their children in the simplex tree.
+pub(crate) struct Families<'a, I, L> {
+    /// Of each simplex by id, its first child, and the end.
+    pub(crate) child_offsets: &'a [I],
+    /// By id.
+    pub(crate) last_vertices: &'a [L],
+    /// The ids of the dimension.
+    pub(crate) parents: Range<usize>,
+    /// Their facets.
+    pub(crate) parent_rows: &'a [I],
+}
+
+impl<I: Index, L: Index> Families<'_, I, L> {
+    /// Finds the facets of the children, of dimension `dim` > 1, that leave out one of the vertices `0..count`, and tells
+    /// of each from any thread.
+    ///
+    /// # Errors
+    /// As [`fill`].
+    pub(crate) fn fill(
+        &self,
+        dim: Dim,
+        count: usize,
+        rows: &mut [I],
+        found: &(impl Fn(usize) + Sync),
+    ) -> Result<(), usize> {
+        let mut boundary = rows;
+        let mut tasks = Vec::new();
+        for start in self.parents.clone().step_by(PARENTS) {
+            let family = start..self.parents.end.min(start + PARENTS);
+            let count = self.children(family.clone()).len();
+            tasks.push((family, boundary.split_off_mut(..count * (dim + 1)).unwrap_or_default()));
+        }
+        tasks.into_par_iter().try_for_each(|(family, rows)| {
+            let mut rows = rows;
+            for parent in family {
+                let siblings = self.children(parent..parent + 1);
+                if !siblings.is_empty() {
+                    let rows = rows.split_off_mut(..siblings.len() * (dim + 1)).unwrap_or_default();
+                    let facets = &self.parent_rows[(parent - self.parents.start) * dim..][..count];
+                    self.fill_family(siblings, facets, rows, found)?;
                 }
+            }
+            Ok(())
+        })
+    }
+
+    fn fill_family(
+        &self,
+        siblings: Range<usize>,
+        facets: &[I],
+        rows: &mut [I],
+        found: &impl Fn(usize),
+    ) -> Result<(), usize> {
+        let labels = &self.last_vertices[siblings.clone()];
+        let width = rows.len() / labels.len();
+        for (i, facet) in facets.iter().enumerate() {
+            // All labels are among the candidates' labels, and both increase.
+            let facet = facet.to_usize();
+            let mut candidates = self.children(facet..facet + 1);
+            for (number, (label, row)) in labels.iter().zip(rows.chunks_exact_mut(width)).enumerate() {
+                candidates.start += seek(&self.last_vertices[candidates.clone()], label);
+                if candidates.is_empty() || self.last_vertices[candidates.start] != *label {
+                    return Err(siblings.start + number);
+                }
+                row[i] = index(candidates.start);
+                found(candidates.start);
             }
         }
         Ok(())
-    })
+    }
+
+    /// The children of consecutive simplices.
+    fn children(&self, parents: Range<usize>) -> Range<usize> {
+        self.child_offsets[parents.start].to_usize()..self.child_offsets[parents.end].to_usize()
+    }
 }
 
 /// Sets a mark, without a write if it is set already.

@@ -36,7 +36,7 @@ use sig_core::{Dim, Index};
 use crate::soup::{Coordinates, Labels, Soup};
 
 pub use complete::complete;
-pub(crate) use facets::seek;
+pub(crate) use facets::{Families, seek};
 pub(crate) use limits::Stage;
 pub use limits::available_memory;
 use limits::{Limit, Meter, Reservation};

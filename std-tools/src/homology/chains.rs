@@ -1,8 +1,11 @@
 //! Where boundaries come from: simplices and cells by dimension and number in their dimension.
 
-use sig_core::{CellId, Dim, Relations, SimplexId};
+use std::borrow::Cow;
 
-use crate::build::narrow;
+use sig_core::format::{Column, SectionKind};
+use sig_core::{CellId, Dim, Index, Relations, SimplexId};
+
+use crate::build::{Families, narrow};
 use crate::cells::CellComplex;
 
 /// A complex as a chain complex: cells of each dimension, numbered from 0, with their boundaries.
@@ -10,16 +13,20 @@ pub trait Chains: Sync {
     /// How many cells there are of each dimension.
     fn counts(&self) -> Vec<usize>;
 
-    /// The boundaries of the cells of a dimension. Cost: a pass over them.
-    fn level(&self, dim: Dim) -> Level;
+    /// The boundaries of the cells of a dimension; `below` are those of the dimension below, if the caller has them.
+    ///
+    /// Cost: nothing where the boundaries lie somewhere already, else a pass over them, in rayon's current pool; without
+    /// `below` over those of all dimensions below.
+    fn level(&self, dim: Dim, below: Option<&Level<'_>>) -> Level<'_>;
 }
 
 /// The boundaries of all cells of one dimension: for each its faces with their incidence numbers, which are not zero.
 #[derive(Clone, Debug)]
-pub struct Level {
+pub struct Level<'a> {
     rows: Rows,
-    /// Numbers in the dimension below.
-    faces: Vec<u32>,
+    /// Numbers in the dimension below, plus `first`.
+    faces: Cow<'a, [u32]>,
+    first: u32,
     /// One for each face; if there are none, they alternate, from 1.
     coefficients: Option<Vec<i32>>,
 }
@@ -32,13 +39,27 @@ enum Rows {
     From(Vec<usize>),
 }
 
-impl Level {
+impl Level<'_> {
     /// How many cells there are.
     #[must_use]
     pub fn num_cells(&self) -> usize {
         match &self.rows {
             Rows::Even(cells, _) => *cells,
             Rows::From(starts) => starts.len() - 1,
+        }
+    }
+
+    /// How many faces all cells have.
+    #[must_use]
+    pub fn num_faces(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The number of faces of every cell, if it is the same for all.
+    pub(super) fn width(&self) -> Option<usize> {
+        match self.rows {
+            Rows::Even(_, width) => Some(width),
+            Rows::From(_) => None,
         }
     }
 
@@ -53,8 +74,9 @@ impl Level {
     /// The faces of a cell, each once.
     #[must_use]
     #[inline]
-    pub fn faces(&self, cell: usize) -> &[u32] {
-        &self.faces[self.range(cell)]
+    pub fn faces(&self, cell: usize) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
+        let first = self.first;
+        self.faces[self.range(cell)].iter().map(move |&face| face - first)
     }
 
     /// The incidence number of the k-th face of a cell.
@@ -70,19 +92,91 @@ impl Level {
     /// The faces of a cell with their incidence numbers.
     #[inline]
     pub fn boundary(&self, cell: usize) -> impl ExactSizeIterator<Item = (u32, i64)> + '_ {
-        let faces = self.faces(cell).iter().enumerate();
-        faces.map(move |(k, &face)| (face, self.coefficient(cell, k)))
-    }
-
-    /// All faces of all cells, one after the other.
-    pub(super) fn all_faces(&self) -> &[u32] {
-        &self.faces
+        self.faces(cell).enumerate().map(move |(k, face)| (face, self.coefficient(cell, k)))
     }
 }
 
 /// The simplices of a complex in a file of either kind, oriented by the order of their vertices.
+///
+/// The boundaries of a file that has them are read where they lie, if its indices have 32 bits; those of a simplex tree
+/// follow from those of the dimension below. The complex must be a right one, as its `validate` says: else the answers are
+/// wrong, or there is a panic.
 #[derive(Debug)]
 pub struct Simplices<'a, C>(pub &'a C);
+
+impl<C: Relations + Sync> Simplices<'_, C> {
+    fn ids(&self, dim: Dim) -> std::ops::Range<usize> {
+        let (start, end) = self.0.simplices_of_dim(dim).bounds();
+        start.index()..end.index()
+    }
+
+    /// The section of the boundaries, if it has 32 bits.
+    fn stored(&self, dim: Dim) -> Option<Level<'_>> {
+        let Column::U32(boundary) = self.0.container().section(SectionKind::Boundary)?.column else { return None };
+        let before: usize = (1..dim).map(|dim| self.ids(dim).len() * (dim + 1)).sum();
+        let cells = self.ids(dim).len();
+        let faces = Cow::Borrowed(&boundary[before..before + cells * (dim + 1)]);
+        Some(Level {
+            rows: Rows::Even(cells, dim + 1),
+            faces,
+            first: narrow(self.ids(dim - 1).start),
+            coefficients: None,
+        })
+    }
+
+    /// By the children of the simplices in the dimension below, if the file has these in 32 bits.
+    fn from_tree(&self, dim: Dim, below: Option<&Level<'_>>) -> Option<Level<'_>> {
+        let section = |kind| self.0.container().section(kind).map(|section| section.column);
+        let Column::U32(child_offsets) = section(SectionKind::ChildOffsets)? else { return None };
+        match section(SectionKind::LastVertices)? {
+            Column::U16(last_vertices) => self.from_families(dim, below, child_offsets, last_vertices),
+            Column::U32(last_vertices) => self.from_families(dim, below, child_offsets, last_vertices),
+            _ => None,
+        }
+    }
+
+    fn from_families<L: Index>(
+        &self,
+        dim: Dim,
+        below: Option<&Level<'_>>,
+        child_offsets: &[u32],
+        last_vertices: &[L],
+    ) -> Option<Level<'_>> {
+        let (parents, cells) = (self.ids(dim - 1), self.ids(dim));
+        let mut rows = vec![0; cells.len() * (dim + 1)];
+        let mut boundaries = rows.chunks_exact_mut(dim + 1);
+        for parent in parents.clone() {
+            let children = child_offsets[parent] as usize..child_offsets[parent + 1] as usize;
+            for (child, row) in children.zip(&mut boundaries) {
+                row[dim] = narrow(parent);
+                if dim == 1 {
+                    row[0] = narrow(last_vertices[child].to_usize());
+                }
+            }
+        }
+        if dim > 1 {
+            let computed =
+                if below.is_none() { self.from_families(dim - 1, None, child_offsets, last_vertices) } else { None };
+            let below = below.or(computed.as_ref())?;
+            let families =
+                Families { child_offsets, last_vertices, parents: parents.clone(), parent_rows: &below.faces };
+            families.fill(dim, dim, &mut rows, &|_| ()).ok()?;
+        }
+        let first = narrow(parents.start);
+        Some(Level { rows: Rows::Even(cells.len(), dim + 1), faces: Cow::Owned(rows), first, coefficients: None })
+    }
+
+    /// Simplex by simplex.
+    fn by_facets(&self, dim: Dim) -> Level<'_> {
+        let below = self.ids(dim - 1).start;
+        let mut faces = Vec::with_capacity(self.ids(dim).len() * (dim + 1));
+        for simplex in self.0.simplices_of_dim(dim) {
+            faces.extend(self.0.facets(simplex).map(|facet: SimplexId| narrow(facet.index() - below)));
+        }
+        let rows = Rows::Even(self.ids(dim).len(), dim + 1);
+        Level { rows, faces: Cow::Owned(faces), first: 0, coefficients: None }
+    }
+}
 
 impl<C: Relations + Sync> Chains for Simplices<'_, C> {
     fn counts(&self) -> Vec<usize> {
@@ -90,21 +184,12 @@ impl<C: Relations + Sync> Chains for Simplices<'_, C> {
         (0..dims).map(|dim| self.0.num_simplices_of_dim(dim)).collect()
     }
 
-    fn level(&self, dim: Dim) -> Level {
-        let first = |dim: Dim| self.0.simplices_of_dim(dim).bounds().0.index();
-        let faces = match dim.checked_sub(1) {
-            None => Vec::new(),
-            Some(below) => {
-                let below = first(below);
-                let mut faces = Vec::with_capacity(self.0.num_simplices_of_dim(dim) * (dim + 1));
-                for simplex in self.0.simplices_of_dim(dim) {
-                    faces.extend(self.0.facets(simplex).map(|facet: SimplexId| narrow(facet.index() - below)));
-                }
-                faces
-            }
-        };
-        let width = if dim == 0 { 0 } else { dim + 1 };
-        Level { rows: Rows::Even(self.0.num_simplices_of_dim(dim), width), faces, coefficients: None }
+    fn level(&self, dim: Dim, below: Option<&Level<'_>>) -> Level<'_> {
+        if dim == 0 {
+            let rows = Rows::Even(self.0.num_vertices(), 0);
+            return Level { rows, faces: Cow::default(), first: 0, coefficients: None };
+        }
+        self.stored(dim).or_else(|| self.from_tree(dim, below)).unwrap_or_else(|| self.by_facets(dim))
     }
 }
 
@@ -136,7 +221,7 @@ impl Chains for Cells<'_> {
         self.complex.counts().to_vec()
     }
 
-    fn level(&self, dim: Dim) -> Level {
+    fn level(&self, dim: Dim, _: Option<&Level<'_>>) -> Level<'_> {
         let (mut starts, mut faces, mut coefficients) = (vec![0], Vec::new(), Vec::new());
         let cells = self.complex.cells().filter(|&cell: &CellId| self.complex.dim_of(cell) == Some(dim));
         for cell in cells {
@@ -147,6 +232,6 @@ impl Chains for Cells<'_> {
             }
             starts.push(faces.len());
         }
-        Level { rows: Rows::From(starts), faces, coefficients: Some(coefficients) }
+        Level { rows: Rows::From(starts), faces: Cow::Owned(faces), first: 0, coefficients: Some(coefficients) }
     }
 }

@@ -6,17 +6,25 @@ use std::hash::BuildHasher;
 
 use hashbrown::{DefaultHashBuilder, HashTable};
 
+use super::Failure;
+use super::bits::Bits;
 use super::chains::Level;
+use super::limits::Watch;
 use super::matching::{Matching, NONE};
 use super::ring::{Overflow, Ring, Sparse, add_multiple};
 use crate::build::narrow;
 
 /// The values of all those cochains on each cell of a dimension: vectors over the critical cells, by their position among these.
 pub(super) struct Cochains<E> {
-    /// Of each cell, which of the vectors; number 0 is zero.
+    /// The cells on which not all cochains vanish.
+    support: Bits,
+    /// Of each of them, which of the vectors.
     of_cell: Vec<u32>,
     vectors: Vec<Sparse<E>>,
 }
+
+/// Steps between two looks at the watch.
+const PATIENCE: usize = 1 << 12;
 
 impl<E: Clone + Eq + std::hash::Hash> Cochains<E> {
     /// Of the cells below `above`. Cost: a pass over the boundaries in the order of the steps, for cells where cochains do not
@@ -25,46 +33,122 @@ impl<E: Clone + Eq + std::hash::Hash> Cochains<E> {
         ring: &R,
         num_cells: usize,
         matching: &Matching,
-        above: &Level,
-    ) -> Result<Self, Overflow> {
-        let mut cochains = Self { of_cell: vec![0; num_cells], vectors: vec![Vec::new()] };
+        above: &Level<'_>,
+        watch: &Watch<'_>,
+    ) -> Result<Self, Failure> {
+        let mut cochains =
+            Self { support: Bits::new(num_cells), of_cell: vec![0; num_cells], vectors: vec![Vec::new()] };
         let mut known = Known { table: HashTable::new(), hasher: DefaultHashBuilder::default() };
         let mut critical = 0;
-        for step in &matching.steps {
+        let mut terms = Vec::new();
+        for (number, step) in matching.steps.iter().enumerate() {
+            if number % PATIENCE == 0 {
+                watch.look(0)?;
+            }
             let vector = if step.coface == NONE {
                 critical += 1;
                 vec![(critical - 1, ring.of(1))]
             } else {
                 let coface = step.coface as usize;
-                let own = above.faces(coface).iter().position(|&face| face == step.cell).unwrap_or(0);
-                // The vector of the cell is still zero. Its incidence number is its own inverse.
-                let sum = cochains.coboundary(ring, above.boundary(coface))?;
-                if sum.is_empty() {
+                // The vector of the cell itself is still zero.
+                cochains.terms(above, coface, &mut terms);
+                if terms.is_empty() {
                     continue;
                 }
-                let mut vector = Vec::new();
-                add_multiple(ring, &mut vector, &ring.of(-above.coefficient(coface, own)), &sum)?;
-                vector
+                // The incidence number of the cell is its own inverse.
+                let own = above.faces(coface).position(|face| face == step.cell).unwrap_or(0);
+                let own = -above.coefficient(coface, own);
+                terms.iter_mut().for_each(|(_, coefficient)| *coefficient *= own);
+                if let [(number, 1)] = terms[..] {
+                    cochains.support.insert(step.cell as usize);
+                    cochains.of_cell[step.cell as usize] = number;
+                    continue;
+                }
+                cochains.sum(ring, terms.iter().copied())?
             };
-            cochains.of_cell[step.cell as usize] = known.number(&mut cochains.vectors, vector);
+            let number = known.number(&mut cochains.vectors, vector);
+            if number != 0 {
+                cochains.support.insert(step.cell as usize);
+                cochains.of_cell[step.cell as usize] = number;
+            }
         }
         Ok(cochains)
     }
 
-    /// The co-boundaries of all cochains on a cell with that boundary.
+    /// The co-boundaries of all cochains on a cell of a level.
     pub(super) fn coboundary<R: Ring<Element = E>>(
         &self,
         ring: &R,
-        boundary: impl Iterator<Item = (u32, i64)>,
+        level: &Level<'_>,
+        cell: usize,
     ) -> Result<Sparse<E>, Overflow> {
-        let mut sum = Vec::new();
-        for (face, coefficient) in boundary {
-            let number = self.of_cell[face as usize];
-            if number != 0 {
-                add_multiple(ring, &mut sum, &ring.of(coefficient), &self.vectors[number as usize])?;
+        let mut terms = Vec::new();
+        self.terms(level, cell, &mut terms);
+        self.sum(ring, terms.into_iter())
+    }
+
+    /// The same as a sum of vectors, each of them once: most often the vectors of two faces cancel, or there is one only.
+    #[inline]
+    fn terms(&self, level: &Level<'_>, cell: usize, terms: &mut Vec<(u32, i64)>) {
+        terms.clear();
+        for (k, face) in level.faces(cell).enumerate().filter(|(_, face)| self.support.contains(*face as usize)) {
+            let (number, coefficient) = (self.of_cell[face as usize], level.coefficient(cell, k));
+            match terms.iter_mut().find(|(other, _)| *other == number) {
+                Some((_, sum)) => *sum += coefficient,
+                None => terms.push((number, coefficient)),
             }
         }
+        terms.retain(|&(_, sum)| sum != 0);
+    }
+
+    /// The sum of multiples of vectors.
+    fn sum<R: Ring<Element = E>>(
+        &self,
+        ring: &R,
+        terms: impl Iterator<Item = (u32, i64)>,
+    ) -> Result<Sparse<E>, Overflow> {
+        let mut sum = Vec::new();
+        for (number, coefficient) in terms {
+            add_multiple(ring, &mut sum, &ring.of(coefficient), &self.vectors[number as usize])?;
+        }
         Ok(sum)
+    }
+}
+
+/// What the boundaries of the critical cells of a dimension are computed from, before it is known which these are.
+pub(super) struct Below<E> {
+    cochains: Cochains<E>,
+    /// The cells on which not all co-boundaries vanish, of those that did not go with a face; increasing.
+    cells: Vec<u32>,
+    /// Where the terms of each begin, and the end.
+    starts: Vec<usize>,
+    /// The co-boundaries, as multiples of vectors.
+    terms: Vec<(u32, i64)>,
+    /// The boundaries of the critical cells of the dimension below.
+    pub(super) columns: Vec<Sparse<E>>,
+}
+
+impl<E: Clone + Eq + std::hash::Hash> Below<E> {
+    /// Of a level, the cells of which are `gone` that went with a face. Cost: a pass over it.
+    pub(super) fn new(mut cochains: Cochains<E>, level: &Level<'_>, gone: &Bits, columns: Vec<Sparse<E>>) -> Self {
+        let (mut cells, mut starts, mut terms) = (Vec::new(), vec![0], Vec::new());
+        let mut of_cell = Vec::new();
+        for cell in gone.absent(0..level.num_cells()) {
+            cochains.terms(level, cell, &mut of_cell);
+            if !of_cell.is_empty() {
+                cells.push(narrow(cell));
+                terms.append(&mut of_cell);
+                starts.push(terms.len());
+            }
+        }
+        (cochains.of_cell, cochains.support) = (Vec::new(), Bits::default());
+        Self { cochains, cells, starts, terms, columns }
+    }
+
+    /// The co-boundaries of all cochains on a cell.
+    pub(super) fn coboundary<R: Ring<Element = E>>(&self, ring: &R, cell: u32) -> Result<Sparse<E>, Overflow> {
+        let Ok(at) = self.cells.binary_search(&cell) else { return Ok(Vec::new()) };
+        self.cochains.sum(ring, self.terms[self.starts[at]..self.starts[at + 1]].iter().copied())
     }
 }
 

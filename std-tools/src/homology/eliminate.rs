@@ -6,6 +6,8 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
+use super::Failure;
+use super::limits::Watch;
 use super::ring::{Overflow, Ring, Sparse, add_multiple};
 
 /// A matrix in the course of elimination.
@@ -75,10 +77,11 @@ impl<'r, R: Ring> Elimination<'r, R> {
     }
 
     /// Ends the elimination.
-    pub(super) fn finish(mut self) -> Result<SmithForm, Overflow> {
+    pub(super) fn finish(mut self, watch: &Watch<'_>) -> Result<SmithForm, Failure> {
         loop {
             let before = self.pivots.len();
             for column in std::mem::take(&mut self.rest) {
+                watch.look(0)?;
                 self.push(column)?;
             }
             if self.pivots.len() == before {
@@ -86,7 +89,7 @@ impl<'r, R: Ring> Elimination<'r, R> {
             }
         }
         debug_assert!(self.pivots.iter().enumerate().all(|(number, pivot)| self.of_row[&pivot.row] == number));
-        let diagonal = diagonalise(self.ring, dense(self.ring, &self.rest))?;
+        let diagonal = diagonalise(self.ring, dense(self.ring, &self.rest), watch)?;
         let mut factors: Vec<BigInt> = diagonal.iter().map(|entry| self.ring.magnitude(entry)).collect();
         divide_in_turn(&mut factors);
         let rank = self.pivots.len() + factors.len();
@@ -110,9 +113,14 @@ fn dense<R: Ring>(ring: &R, columns: &[Sparse<R::Element>]) -> Vec<Vec<R::Elemen
 }
 
 /// The entries that are not zero of a diagonal matrix that row and column operations make of a matrix.
-fn diagonalise<R: Ring>(ring: &R, mut matrix: Vec<Vec<R::Element>>) -> Result<Vec<R::Element>, Overflow> {
+fn diagonalise<R: Ring>(
+    ring: &R,
+    mut matrix: Vec<Vec<R::Element>>,
+    watch: &Watch<'_>,
+) -> Result<Vec<R::Element>, Failure> {
     let mut diagonal = Vec::new();
     while let Some((line, at)) = smallest(ring, &matrix) {
+        watch.look(0)?;
         let pivot = matrix.swap_remove(line);
         let entry = pivot[at].clone();
         let mut is_alone = true;

@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 use num_bigint::BigInt;
 use sig_core::Dim;
 
+use super::bits::Bits;
 use super::chains::{Chains, Level};
 use super::cochains::Cochains;
+use super::limits::Watch;
 use super::matching::{Matching, NONE, pair};
 use super::ring::{Integers, Overflow, PrimeField, Ring, Sparse};
 use super::smith::Smith;
-use super::{Coefficients, HomologyError, HomologyOptions, all_critical, check_closed, check_size, is_prime};
+use super::{Coefficients, Failure, HomologyError, HomologyOptions, all_critical, check_closed, check_size, is_prime};
 
 /// The most critical cells of a dimension: matrices on them are dense.
 const MOST_CRITICAL: usize = 2000;
@@ -38,58 +40,61 @@ pub struct Generator {
 /// # Errors
 /// [`HomologyError`], among them [`HomologyError::TooManyCritical`].
 pub fn generators(chains: &impl Chains, options: &HomologyOptions<'_>) -> Result<Vec<Vec<Generator>>, HomologyError> {
-    let never = |_: Overflow| unreachable!("neither a field nor integers of any size have overflow");
-    match options.over {
-        Coefficients::Prime(prime) if !is_prime(prime) => Err(HomologyError::NotPrime(prime)),
-        Coefficients::Prime(prime) => {
-            let ring = PrimeField(prime);
-            Morse::new(&ring, chains, options.relative_to)?.generators().unwrap_or_else(never)
-        }
-        Coefficients::Integers => {
-            Morse::new(&Integers, chains, options.relative_to)?.generators().unwrap_or_else(never)
-        }
-        Coefficients::Rationals => {
-            let found = Morse::new(&Integers, chains, options.relative_to)?.generators().unwrap_or_else(never)?;
-            let is_free = |generator: &Generator| generator.order.is_none();
-            Ok(found.into_iter().map(|all| all.into_iter().filter(is_free).collect()).collect())
-        }
+    let found = match options.over {
+        Coefficients::Prime(prime) if !is_prime(prime) => return Err(HomologyError::NotPrime(prime)),
+        Coefficients::Prime(prime) => Morse::new(&PrimeField(prime), chains, options)?.generators(),
+        Coefficients::Integers | Coefficients::Rationals => Morse::new(&Integers, chains, options)?.generators(),
+    };
+    let mut found = found.map_err(HomologyError::from)?;
+    if options.over == Coefficients::Rationals {
+        found.iter_mut().for_each(|all| all.retain(|generator| generator.order.is_none()));
     }
+    Ok(found)
 }
 
 /// The pairs of a complex, with its boundaries.
 struct Morse<'r, R: Ring> {
     ring: &'r R,
+    watch: Watch<'r>,
+    counts: Vec<usize>,
     matchings: Vec<Matching>,
-    levels: Vec<Level>,
-    /// Cells of the subcomplex, and those that went with a face.
-    subcomplex: Vec<Vec<bool>>,
+    levels: Vec<Level<'r>>,
+    subcomplex: Vec<Bits>,
 }
 
 impl<'r, R: Ring> Morse<'r, R> {
-    fn new(ring: &'r R, chains: &impl Chains, relative_to: Option<&[Vec<bool>]>) -> Result<Self, HomologyError> {
-        let counts = chains.counts();
-        let subcomplex = check_size(&counts, relative_to)?;
+    fn new(ring: &'r R, chains: &'r impl Chains, options: &HomologyOptions<'r>) -> Result<Self, HomologyError> {
+        let mut counts = chains.counts();
+        let subcomplex = check_size(&counts, options.relative_to)?;
+        // A group needs the boundaries of one dimension more.
+        counts.truncate(options.max_dim.map_or(usize::MAX, |max_dim| max_dim.saturating_add(2)));
+        let watch = Watch::new(options.limits, counts.iter().map(|&count| count as u64).sum());
+        watch.need((1..counts.len()).map(|dim| super::bytes(&counts, dim - 1)).sum())?;
         let mut gone = subcomplex.clone();
-        let levels: Vec<Level> = (0..counts.len()).map(|dim| chains.level(dim)).collect();
+        let mut levels: Vec<Level<'_>> = Vec::new();
+        for dim in 0..counts.len() {
+            levels.push(chains.level(dim, levels.last()));
+        }
         let mut matchings = Vec::new();
         for dim in 0..counts.len() {
             let (lower, upper) = gone.split_at_mut(dim + 1);
-            matchings.push(match upper.first_mut() {
-                Some(gone_above) => {
-                    check_closed(&levels[dim + 1], dim + 1, relative_to)?;
-                    pair(&lower[dim], &levels[dim + 1], gone_above)
+            let above = levels.get(dim + 1).zip(upper.first_mut());
+            matchings.push(match above {
+                Some((above, gone_above)) => {
+                    check_closed(above, dim + 1, options.relative_to)?;
+                    pair(counts[dim], &lower[dim], above, gone_above, &watch)?
                 }
-                None => all_critical(&lower[dim]),
+                None => all_critical(counts[dim], &lower[dim]),
             });
             let critical = matchings[dim].critical.len();
             if critical > MOST_CRITICAL {
                 return Err(HomologyError::TooManyCritical { dim, critical });
             }
         }
-        Ok(Self { ring, matchings, levels, subcomplex })
+        Ok(Self { ring, watch, counts, matchings, levels, subcomplex })
     }
 
-    fn generators(&self) -> Result<Result<Vec<Vec<Generator>>, HomologyError>, Overflow> {
+    fn generators(&self) -> Result<Vec<Vec<Generator>>, Failure> {
         let mut found = Vec::new();
         let mut cycles = Smith::new(self.ring, Vec::new(), self.matchings.first().map_or(0, |m| m.critical.len()))?;
         for dim in 0..self.matchings.len() {
@@ -130,7 +135,7 @@ impl<'r, R: Ring> Morse<'r, R> {
                     None => None,
                 };
                 if !self.is_certain(dim, &cycle, order.as_ref().zip(bounds.as_ref()))? {
-                    return Ok(Err(HomologyError::BoundaryOfBoundary { dim: dim + 1 }));
+                    return Err(HomologyError::BoundaryOfBoundary { dim: dim + 1 }.into());
                 }
                 let chain = |chain: Sparse<R::Element>| {
                     chain.into_iter().map(|(cell, value)| (cell, self.ring.integer(&value))).collect::<Chain>()
@@ -144,19 +149,19 @@ impl<'r, R: Ring> Morse<'r, R> {
             found.push(of_dim);
             cycles = Smith::new(self.ring, above, columns)?;
         }
-        Ok(Ok(found))
+        Ok(found)
     }
 
     /// The boundaries of the critical cells of a dimension, a row for each critical cell of the one below.
-    fn boundaries(&self, dim: Dim) -> Result<Vec<Vec<R::Element>>, Overflow> {
+    fn boundaries(&self, dim: Dim) -> Result<Vec<Vec<R::Element>>, Failure> {
         let below = &self.matchings[dim - 1];
         let Some((matching, level)) = self.matchings.get(dim).zip(self.levels.get(dim)) else {
             return Ok(vec![Vec::new(); below.critical.len()]);
         };
-        let cochains = Cochains::new(self.ring, self.subcomplex[dim - 1].len(), below, level)?;
+        let cochains = Cochains::new(self.ring, self.counts[dim - 1], below, level, &self.watch)?;
         let mut matrix = vec![vec![self.ring.of(0); matching.critical.len()]; below.critical.len()];
         for (column, &cell) in matching.critical.iter().enumerate() {
-            for (row, value) in cochains.coboundary(self.ring, level.boundary(cell as usize))? {
+            for (row, value) in cochains.coboundary(self.ring, level, cell as usize)? {
                 matrix[row as usize][column] = value;
             }
         }
@@ -175,7 +180,7 @@ impl<'r, R: Ring> Morse<'r, R> {
         }
         if let Some(below) = dim.checked_sub(1) {
             let steps = &self.matchings[below].steps;
-            let mut number = vec![NONE; self.subcomplex[below].len()];
+            let mut number = vec![NONE; self.counts[below]];
             (0..)
                 .zip(steps)
                 .filter(|(_, step)| step.coface != NONE)
@@ -233,7 +238,7 @@ impl<'r, R: Ring> Morse<'r, R> {
         let mut sum: BTreeMap<u32, R::Element> = BTreeMap::new();
         for (cell, value) in chain {
             for (face, coefficient) in self.levels[dim].boundary(*cell as usize) {
-                if !self.subcomplex[dim - 1][face as usize] {
+                if !self.subcomplex[dim - 1].contains(face as usize) {
                     let entry = sum.entry(face).or_insert_with(|| self.ring.of(0));
                     *entry = self.ring.add_product(entry, value, &self.ring.of(coefficient))?;
                 }

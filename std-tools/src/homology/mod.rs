@@ -22,10 +22,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bits;
 mod chains;
 mod cochains;
 mod eliminate;
 mod generators;
+mod limits;
 mod matching;
 mod ring;
 mod smith;
@@ -33,10 +35,14 @@ mod smith;
 pub use num_bigint::BigInt;
 use sig_core::Dim;
 
+use crate::build::narrow;
+use bits::Bits;
 pub use chains::{Cells, Chains, Level, Simplices};
-use cochains::Cochains;
+use cochains::{Below, Cochains};
 use eliminate::{Elimination, SmithForm};
 pub use generators::{Chain, Generator, generators};
+use limits::Watch;
+pub use limits::{Limits, Stopped};
 use matching::{Matching, pair};
 use ring::{Integers, Overflow, PrimeField, Ring, SmallIntegers, Sparse, add_multiple};
 
@@ -53,32 +59,39 @@ pub enum Coefficients {
 }
 
 /// What to compute. Make one by `HomologyOptions { over: Coefficients::Rationals, ..Default::default() }`.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Default)]
 pub struct HomologyOptions<'a> {
     /// The coefficients.
     pub over: Coefficients,
     /// For each dimension and each cell of it whether it belongs to a subcomplex; the homology is then relative to this.
     pub relative_to: Option<&'a [Vec<bool>]>,
+    /// The highest dimension of a group; that of the complex if `None`. Cells of more than one dimension above it are not
+    /// looked at.
+    pub max_dim: Option<Dim>,
+    /// Time, memory, progress.
+    pub limits: Limits<'a>,
 }
 
 /// The homology of a complex.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Homology {
-    /// The rank of each homology group, up to the dimension of the complex.
+    /// The rank of each homology group, up to the dimension of the complex or the highest that was asked for.
     pub betti: Vec<usize>,
     /// The invariant factors of the torsion of each group, each dividing the next; none over a field.
     pub torsion: Vec<Vec<BigInt>>,
     /// The cells of each dimension, without those of the subcomplex.
     pub counts: Vec<usize>,
-    /// How many of them are critical, that is, were left by the reduction.
+    /// How many of them are critical, that is, were left by the reduction; of the dimensions whose groups are known.
     pub critical: Vec<usize>,
+    /// Why not all groups are known that were asked for: then those of lower dimensions are.
+    pub stopped: Option<Stopped>,
 }
 
 impl Homology {
-    /// χ = Σ (−1)^i n_i = Σ (−1)^i β_i.
+    /// χ = Σ (−1)^i n_i, which is Σ (−1)^i β_i.
     #[must_use]
     pub fn euler_characteristic(&self) -> i64 {
-        alternating(&self.betti)
+        alternating(&self.counts)
     }
 }
 
@@ -116,6 +129,9 @@ pub enum HomologyError {
         /// How many there are.
         critical: usize,
     },
+    /// The work was to end early.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The boundary of the boundary of some cell is not zero.
     #[error("in dimension {dim} there is a cell the boundary of whose boundary is not zero")]
     BoundaryOfBoundary {
@@ -126,30 +142,21 @@ pub enum HomologyError {
 
 /// The homology of a complex.
 ///
-/// Over the integers in 64 bits; where they do not suffice, all is done again with integers of any size.
+/// Over the integers in 64 bits; where they do not suffice, all is done again with integers of any size. The result does not
+/// depend on the number of threads.
 ///
 /// # Errors
-/// [`HomologyError`].
+/// [`HomologyError`]. Where a limit is reached, the result is that of lower dimensions.
 pub fn homology(chains: &impl Chains, options: &HomologyOptions<'_>) -> Result<Homology, HomologyError> {
-    if let Coefficients::Prime(prime) = options.over {
-        if !is_prime(prime) {
-            return Err(HomologyError::NotPrime(prime));
-        }
-        return match compute(&PrimeField(prime), chains, options.relative_to) {
-            Err(Failure::Error(error)) => Err(error),
-            Ok(homology) => Ok(homology),
-            Err(Failure::Overflow) => unreachable!("a field has no overflow"),
-        };
-    }
-    let mut homology = match compute(&SmallIntegers, chains, options.relative_to) {
-        Err(Failure::Overflow) => match compute(&Integers, chains, options.relative_to) {
-            Err(Failure::Overflow) => unreachable!("integers of any size have no overflow"),
-            Err(Failure::Error(error)) => return Err(error),
-            Ok(homology) => homology,
+    let mut homology = match options.over {
+        Coefficients::Prime(prime) if !is_prime(prime) => return Err(HomologyError::NotPrime(prime)),
+        Coefficients::Prime(prime) => compute(&PrimeField(prime), chains, options),
+        Coefficients::Integers | Coefficients::Rationals => match compute(&SmallIntegers, chains, options) {
+            Err(Failure::Overflow) => compute(&Integers, chains, options),
+            other => other,
         },
-        Err(Failure::Error(error)) => return Err(error),
-        Ok(homology) => homology,
-    };
+    }
+    .map_err(HomologyError::from)?;
     if options.over == Coefficients::Rationals {
         homology.torsion.iter_mut().for_each(Vec::clear);
     }
@@ -159,6 +166,7 @@ pub fn homology(chains: &impl Chains, options: &HomologyOptions<'_>) -> Result<H
 /// Why a computation ended early.
 enum Failure {
     Overflow,
+    Stopped(Stopped),
     Error(HomologyError),
 }
 
@@ -168,65 +176,109 @@ impl From<Overflow> for Failure {
     }
 }
 
+impl From<Stopped> for Failure {
+    fn from(stopped: Stopped) -> Self {
+        Self::Stopped(stopped)
+    }
+}
+
+impl From<Failure> for HomologyError {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Error(error) => error,
+            Failure::Stopped(stopped) => stopped.into(),
+            Failure::Overflow => unreachable!("neither a field nor integers of any size have overflow"),
+        }
+    }
+}
+
 impl From<HomologyError> for Failure {
     fn from(error: HomologyError) -> Self {
         Self::Error(error)
     }
 }
 
-fn compute<R: Ring>(ring: &R, chains: &impl Chains, relative_to: Option<&[Vec<bool>]>) -> Result<Homology, Failure> {
-    let mut gone = check_size(&chains.counts(), relative_to)?;
-    let counts: Vec<usize> = gone.iter().map(|gone| gone.iter().filter(|&&gone| !gone).count()).collect();
-    let mut critical = Vec::with_capacity(counts.len());
-    // Of the boundaries between critical cells of dimension p and p − 1, for each p.
-    let mut forms: Vec<SmithForm> = Vec::with_capacity(counts.len() + 1);
-    let mut below: Option<Below<R::Element>> = None;
-    for dim in 0..counts.len() {
-        let (lower, upper) = gone.split_at_mut(dim + 1);
-        let (matching, above) = match upper.first_mut() {
-            Some(gone_above) => {
-                let above = chains.level(dim + 1);
-                check_closed(&above, dim + 1, relative_to)?;
-                (pair(&lower[dim], &above, gone_above), Some(above))
-            }
-            None => (all_critical(&lower[dim]), None),
-        };
-        let (form, columns) = boundaries(ring, dim, below.take(), &matching, above.is_some())?;
-        forms.push(form);
-        critical.push(matching.critical.len());
-        below = match above {
-            Some(above) if !matching.critical.is_empty() => {
-                let cochains = Cochains::new(ring, lower[dim].len(), &matching, &above)?;
-                Some(Below { cochains, level: above, columns })
-            }
-            _ => None,
-        };
-        lower[dim] = Vec::new();
-    }
-    Ok(assemble(counts, critical, forms))
+/// What is known so far.
+#[derive(Default)]
+struct Found {
+    critical: Vec<usize>,
+    /// Of the boundaries between critical cells of dimension p and p − 1, for each p.
+    forms: Vec<SmithForm>,
 }
 
-/// The marks of the cells of the subcomplex, if they are right, and if cells can be numbered.
-fn check_size(counts: &[usize], relative_to: Option<&[Vec<bool>]>) -> Result<Vec<Vec<bool>>, HomologyError> {
+fn compute<R: Ring>(ring: &R, chains: &impl Chains, options: &HomologyOptions<'_>) -> Result<Homology, Failure> {
+    let all = chains.counts();
+    let gone = check_size(&all, options.relative_to)?;
+    let counts: Vec<usize> = all.iter().zip(&gone).map(|(&all, gone)| all - gone.count()).collect();
+    let wanted = options.max_dim.map_or(all.len(), |max_dim| all.len().min(max_dim.saturating_add(1)));
+    let watch = Watch::new(options.limits, counts[..wanted].iter().map(|&count| count as u64).sum());
+    let mut found = Found::default();
+    let stopped = match find(ring, chains, options, (all, gone), wanted, &watch, &mut found) {
+        Err(Failure::Stopped(stopped)) => Some(stopped),
+        other => other.map(|()| None)?,
+    };
+    Ok(assemble(counts, found, wanted, stopped))
+}
+
+/// Pairs the cells of one dimension after the other, and finds the normal forms of the boundaries of those that are left.
+fn find<R: Ring>(
+    ring: &R,
+    chains: &impl Chains,
+    options: &HomologyOptions<'_>,
+    (all, mut gone): (Vec<usize>, Vec<Bits>),
+    wanted: usize,
+    watch: &Watch<'_>,
+    found: &mut Found,
+) -> Result<(), Failure> {
+    let mut below: Option<Below<R::Element>> = None;
+    let mut level = None;
+    // Above the highest group that is wanted, boundaries only.
+    for dim in 0..all.len().min(wanted + 1) {
+        let (lower, upper) = gone.split_at_mut(dim + 1);
+        let gone_here = &mut lower[dim];
+        let (matching, above) = match upper.first_mut().filter(|_| dim < wanted) {
+            Some(gone_above) => {
+                watch.need(bytes(&all, dim))?;
+                let above = chains.level(dim + 1, level.take().as_ref());
+                check_closed(&above, dim + 1, options.relative_to)?;
+                (pair(all[dim], gone_here, &above, gone_above, watch)?, Some(above))
+            }
+            None => (all_critical(all[dim], gone_here), None),
+        };
+        let (form, columns) = boundaries(ring, dim, below.take(), &matching, above.is_some(), watch)?;
+        found.forms.push(form);
+        found.critical.push(matching.critical.len());
+        if let Some((above, gone_above)) = above.as_ref().zip(upper.first()) {
+            if !matching.critical.is_empty() {
+                let cochains = Cochains::new(ring, all[dim], &matching, above, watch)?;
+                below = Some(Below::new(cochains, above, gone_above, columns));
+            }
+        }
+        *gone_here = Bits::default();
+        level = above;
+    }
+    Ok(())
+}
+
+/// About how many bytes it takes to pair the cells of a dimension with their cofaces: the faces of cells and cofaces, the
+/// cofaces of cells, and what belongs to each.
+fn bytes(counts: &[usize], dim: Dim) -> u64 {
+    let (cells, cofaces) = (counts[dim] as u64, counts[dim + 1] as u64);
+    let faces = cofaces * (dim as u64 + 2) * 4;
+    let faces_below = if dim > 0 { cells * (dim as u64 + 1) * 4 } else { 0 };
+    faces + faces.max(faces_below) + cells * 12 + cofaces + Bits::bytes(counts.iter().sum())
+}
+
+/// The cells of the subcomplex, if its marks are right, and if cells can be numbered.
+fn check_size(counts: &[usize], relative_to: Option<&[Vec<bool>]>) -> Result<Vec<Bits>, HomologyError> {
     if let Some((dim, &count)) = counts.iter().enumerate().find(|(_, count)| u32::try_from(**count + 1).is_err()) {
         return Err(HomologyError::TooManyCells { dim, count });
     }
-    let marks = match relative_to {
-        Some(marks) => marks.to_vec(),
-        None => counts.iter().map(|&count| vec![false; count]).collect(),
-    };
+    let Some(marks) = relative_to else { return Ok(counts.iter().map(|&count| Bits::new(count)).collect()) };
     if marks.len() != counts.len() || marks.iter().zip(counts).any(|(marks, &count)| marks.len() != count) {
         return Err(HomologyError::MalformedSubcomplex);
     }
-    Ok(marks)
-}
-
-/// What the boundaries of the critical cells of a dimension are computed from.
-struct Below<E> {
-    cochains: Cochains<E>,
-    level: Level,
-    /// The boundaries of the critical cells of the dimension below.
-    columns: Columns<E>,
+    Ok(marks.iter().map(|marks| Bits::of(marks)).collect())
 }
 
 /// The columns of a sparse matrix.
@@ -240,40 +292,40 @@ fn boundaries<R: Ring>(
     below: Option<Below<R::Element>>,
     matching: &Matching,
     is_wanted: bool,
+    watch: &Watch<'_>,
 ) -> Result<(SmithForm, Columns<R::Element>), Failure> {
     let mut columns = vec![Vec::new(); if is_wanted { matching.critical.len() } else { 0 }];
     let mut elimination = Elimination::new(ring);
-    if let Some(Below { cochains, level, columns: lower }) = below {
-        for (number, &cell) in matching.critical.iter().enumerate() {
-            let column = cochains.coboundary(ring, level.boundary(cell as usize))?;
-            if column.is_empty() {
-                continue;
-            }
-            let mut twice = Vec::new();
-            for (face, coefficient) in &column {
-                add_multiple(ring, &mut twice, coefficient, &lower[*face as usize])?;
-            }
-            if !twice.is_empty() {
-                return Err(HomologyError::BoundaryOfBoundary { dim }.into());
-            }
-            if let Some(kept) = columns.get_mut(number) {
-                kept.clone_from(&column);
-            }
-            elimination.push(column)?;
+    let Some(below) = below else { return Ok((elimination.finish(watch)?, columns)) };
+    for (number, &cell) in matching.critical.iter().enumerate() {
+        let column = below.coboundary(ring, cell)?;
+        if column.is_empty() {
+            continue;
         }
+        let mut twice = Vec::new();
+        for (face, coefficient) in &column {
+            add_multiple(ring, &mut twice, coefficient, &below.columns[*face as usize])?;
+        }
+        if !twice.is_empty() {
+            return Err(HomologyError::BoundaryOfBoundary { dim }.into());
+        }
+        if let Some(kept) = columns.get_mut(number) {
+            kept.clone_from(&column);
+        }
+        watch.look(0)?;
+        elimination.push(column)?;
     }
-    Ok((elimination.finish()?, columns))
+    Ok((elimination.finish(watch)?, columns))
 }
 
-fn all_critical(gone: &[bool]) -> Matching {
-    let critical = (0_u32..).zip(gone).filter(|(_, gone)| !**gone).map(|(cell, _)| cell).collect();
-    Matching { steps: Vec::new(), critical }
+fn all_critical(num_cells: usize, gone: &Bits) -> Matching {
+    Matching { steps: Vec::new(), critical: gone.absent(0..num_cells).map(narrow).collect() }
 }
 
 /// Checks that the faces of the cells of a subcomplex belong to it.
-fn check_closed(level: &Level, dim: Dim, relative_to: Option<&[Vec<bool>]>) -> Result<(), HomologyError> {
+fn check_closed(level: &Level<'_>, dim: Dim, relative_to: Option<&[Vec<bool>]>) -> Result<(), HomologyError> {
     let Some([faces, cells]) = relative_to.map(|marks| [&marks[dim - 1], &marks[dim]]) else { return Ok(()) };
-    let is_open = |&cell: &usize| cells[cell] && level.faces(cell).iter().any(|&face| !faces[face as usize]);
+    let is_open = |&cell: &usize| cells[cell] && level.faces(cell).any(|face| !faces[face as usize]);
     match (0..level.num_cells()).find(is_open) {
         Some(cell) => Err(HomologyError::NotClosed { dim, cell }),
         None => Ok(()),
@@ -281,16 +333,21 @@ fn check_closed(level: &Level, dim: Dim, relative_to: Option<&[Vec<bool>]>) -> R
 }
 
 /// The homology by the normal forms of the boundaries: that of dimension p begins with number p, and is of the critical p-cells.
-fn assemble(counts: Vec<usize>, critical: Vec<usize>, mut forms: Vec<SmithForm>) -> Homology {
-    forms.push(SmithForm { rank: 0, factors: Vec::new() });
+fn assemble(counts: Vec<usize>, found: Found, wanted: usize, stopped: Option<Stopped>) -> Homology {
+    let Found { mut critical, mut forms } = found;
+    if stopped.is_none() && forms.len() == wanted {
+        forms.push(SmithForm { rank: 0, factors: Vec::new() });
+    }
     let (mut betti, mut torsion) = (Vec::new(), Vec::new());
     for (&critical, pair) in critical.iter().zip(forms.windows(2)) {
         betti.push(critical - pair[0].rank - pair[1].rank);
         torsion.push(pair[1].factors.clone());
     }
-    let homology = Homology { betti, torsion, counts, critical };
-    assert_eq!(homology.euler_characteristic(), alternating(&homology.counts), "the formula of Euler and Poincaré");
-    homology
+    critical.truncate(betti.len());
+    if betti.len() == counts.len() {
+        assert_eq!(alternating(&betti), alternating(&counts), "the formula of Euler and Poincaré");
+    }
+    Homology { betti, torsion, counts, critical, stopped }
 }
 
 fn alternating(counts: &[usize]) -> i64 {
