@@ -89,7 +89,9 @@ pub(super) fn list(source: &mut Source<'_>, repeated: &mut usize) -> Result<Spac
 
 fn vertex(table: &mut LabelTable, line: &Line<'_>, word: Word<'_>) -> Result<u32, Fault> {
     if word.bytes.starts_with(b"\"") {
-        return Err(line.unexpected(word, "a vertex label whose quotes stand around all of it; blanks and commas part labels"));
+        return Err(
+            line.unexpected(word, "a vertex label whose quotes stand around all of it; blanks and commas part labels")
+        );
     }
     let number = match (canonical(word.bytes), std::str::from_utf8(word.bytes)) {
         (Some(integer), _) => table.number_integer(integer),

@@ -49,7 +49,8 @@ fn check_numbers(header: &[u8]) -> Result<(), Fault> {
 fn check_brackets(header: &[u8]) -> Result<(), Fault> {
     const MOST: usize = 8;
     if header.iter().filter(|byte| matches!(byte, b'(' | b'[' | b'{')).count() > MOST {
-        let message = "an array of records, or no array: there are more than 8 brackets; points are rows of plain numbers";
+        let message =
+            "an array of records, or no array: there are more than 8 brackets; points are rows of plain numbers";
         return Err(unsupported(message));
     }
     Ok(())
