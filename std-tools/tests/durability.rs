@@ -1,11 +1,14 @@
 //! `sig build --force` ended in every way there is: killed, out of room, forbidden to write. The old file is there, whole,
-//! or the new one is; nothing half done has the name, and nothing else is left.
+//! or the new one is; nothing half done has the name, and nothing else is left. And what becomes of those who read a file
+//! meanwhile: of one that is replaced, and of one that another program truncates.
 //!
 //! The full disk and the read-only directory are mounts in a namespace of their own (`unshare`); where that is not
 //! allowed, the test says SKIPPED.
 #![cfg(target_os = "linux")]
 
 use std::fs;
+use std::io::Read;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -186,16 +189,81 @@ fn a_directory_that_is_read_only() {
     assert_eq!(place.holds(), 0);
 }
 
-/// The program that loads a file does not care what becomes of it; the one that maps it is told about in `Mapped`.
+/// A program in the middle of reading a file: `sig export` has written its first byte, and waits, for the rest is more than
+/// a pipe holds.
+struct Reader {
+    child: Child,
+    first: u8,
+}
+
+impl Reader {
+    fn of(place: &Place, flags: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sig"));
+        command.arg("export").args(flags).arg(place.out()).args(["-o", "-", "--format", "simplices"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut first = [0];
+        child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
+        Self { child, first: first[0] }
+    }
+
+    /// How it ended, and all that it wrote.
+    fn rest(self) -> (Output, Vec<u8>) {
+        let output = self.child.wait_with_output().unwrap();
+        let text = [&[self.first][..], &output.stdout].concat();
+        (output, text)
+    }
+}
+
+/// What `sig export` writes of the old file when nothing disturbs it: more than a pipe holds.
+fn undisturbed(place: &Place) -> Vec<u8> {
+    let (output, text) = Reader::of(place, &[]).rest();
+    assert!(output.status.success() && text.len() > 1 << 18, "{}", message(&output));
+    text
+}
+
+/// Mapped or loaded, it is the old file that is read.
+#[test]
+fn a_file_that_is_replaced_is_read_to_the_end() {
+    let place = Place::new(20_000);
+    let whole = undisturbed(&place);
+    for flags in [&[][..], &["--load"]] {
+        fs::write(place.out(), &place.files[0]).unwrap();
+        let reader = Reader::of(&place, flags);
+        assert!(build(&place.input(1), &place.out()).output().unwrap().status.success());
+        assert_eq!(place.holds(), 1);
+        let (output, text) = reader.rest();
+        assert!(output.status.success() && text == whole, "{flags:?}: {}", message(&output));
+    }
+}
+
+/// The pages of a truncated file are gone, and the system ends the program that touches them: nothing that a program can
+/// prevent, but by not mapping the file. `--load` is that.
+#[test]
+fn a_file_that_is_truncated_ends_the_program_that_mapped_it() {
+    const SIGBUS: i32 = 7;
+    let place = Place::new(20_000);
+    let whole = undisturbed(&place);
+    let truncate = || fs::OpenOptions::new().write(true).open(place.out()).unwrap().set_len(0).unwrap();
+
+    let reader = Reader::of(&place, &[]);
+    truncate();
+    let (output, text) = reader.rest();
+    assert_eq!(output.status.signal(), Some(SIGBUS), "{output:?}");
+    assert!(whole.starts_with(&text) && text.len() < whole.len());
+
+    fs::write(place.out(), &place.files[0]).unwrap();
+    let reader = Reader::of(&place, &["--load"]);
+    truncate();
+    let (output, text) = reader.rest();
+    assert!(output.status.success() && text == whole, "{}", message(&output));
+}
+
+/// The same of the library, in this process.
 #[test]
 fn a_loaded_file_may_be_truncated() {
     let place = Place::new(100);
     let loaded = sig_tools::Loaded::open(place.out()).unwrap();
     fs::write(place.out(), b"").unwrap();
     assert!(loaded.bytes() == place.files[0]);
-    let arguments = ["query", "--load", "--json"];
-    fs::write(place.out(), &place.files[0]).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sig"));
-    let output = command.args(arguments).arg(place.out()).args(["star", "0,1"]).output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), r#"[["0","1"],["0","1","2"]]"#);
+    assert_eq!(sig_core::with_complex!(loaded.complex().unwrap(), complex => complex.validate()), Ok(()));
 }

@@ -63,6 +63,11 @@ fn read_named() {
 }
 
 #[test]
+fn cells() {
+    replay("read_cells", fuzz::cells);
+}
+
+#[test]
 fn space() {
     replay("space", |bytes| fuzz::space(None, bytes));
 }

@@ -5,6 +5,7 @@ use sig_core::format::{self, Container};
 use sig_core::mcc::Mcc;
 use sig_core::{AnyComplex, AnyTree, with_complex, with_tree};
 use sig_tools::build::{BuildOptions, build};
+use sig_tools::cells::{read_cells, write_cells};
 use sig_tools::incidence_graph::IncidenceGraph;
 pub use sig_tools::io::Format;
 pub use sig_tools::io::space::SpaceFormat;
@@ -229,6 +230,27 @@ fn build_in_both_ways(soup: &Soup) {
         (Ok(built), Ok(graph)) => assert_eq!(built.arrays, graph.build_sig()),
         (Err(_), _) => {}
         (Ok(_), Err(error)) => panic!("built, but not as an incidence graph: {error}"),
+    }
+}
+
+/// Reads the bytes as a cell complex in text, and what was read again from the text in which it is written.
+///
+/// # Panics
+/// If what is read is no cell complex, or is another one when it is read again.
+pub fn cells(bytes: &[u8]) {
+    match read_cells(bytes, "input") {
+        Ok(complex) => {
+            complex.check().expect("what was read is a complex");
+            // Vertices have no lines: of many, the text alone would be no larger than this, but all that is made of it.
+            if complex.num_cells() > 1 << 16 {
+                return;
+            }
+            let mut text = Vec::new();
+            write_cells(&complex, &mut text).expect("writing into memory");
+            let copy = read_cells(&text[..], "copy").expect("what was just written");
+            assert!(copy == complex, "written as\n{}", String::from_utf8_lossy(&text));
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
 

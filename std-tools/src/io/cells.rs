@@ -16,6 +16,7 @@ use std::io::Read;
 use sig_core::{CellId, Dim, Incidence, MAX_DIM};
 
 use super::error::{ErrorKind, Fault, Position, ReadError};
+use super::intake::may_have;
 use super::source::Source;
 use super::text::{Line, Word, parse_integer};
 
@@ -54,7 +55,8 @@ pub(crate) fn read_cell_list(reader: impl Read, name: &str) -> Result<CellList, 
 const COMMENT: Option<u8> = Some(b'#');
 
 fn read(source: &mut Source<'_>) -> Result<CellList, Fault> {
-    let counts = counts(source.need_content(COMMENT, "`cells` and the number of cells of each dimension")?)?;
+    let line = source.need_content(COMMENT, "`cells` and the number of cells of each dimension")?;
+    let (counts, position) = counts(line)?;
     let mut list = CellList { counts, faces: Vec::new(), ends: Vec::new(), lines: Vec::new() };
     for dim in 1..list.counts.len() {
         for _ in 0..list.counts[dim] {
@@ -63,14 +65,23 @@ fn read(source: &mut Source<'_>) -> Result<CellList, Fault> {
         }
     }
     source.need_end(COMMENT, "file after the last cell")?;
+    // All other cells have lines of their own.
+    let (vertices, named) = (list.counts.first().copied().unwrap_or(0), list.faces.len());
+    if !may_have(vertices, named) {
+        let rule = format!("{vertices} vertices, but the boundaries have only {named} cells in all");
+        return Err(Fault::new(position, ErrorKind::Rule(rule.into())));
+    }
     Ok(list)
 }
 
-fn counts(mut line: Line<'_>) -> Result<Vec<usize>, Fault> {
+/// The number of cells of each dimension, and where they are told.
+fn counts(mut line: Line<'_>) -> Result<(Vec<usize>, Position), Fault> {
     let word = line.need_word("`cells`")?;
     if word.bytes != b"cells" {
         return Err(line.unexpected(word, "`cells` and the number of cells of each dimension"));
     }
+    line.skip_blanks();
+    let position = line.position(line.at());
     let (mut counts, mut total) = (Vec::new(), 0_usize);
     while let Some(word) = line.word() {
         let count: u32 = line.parse_integer(word, "a number of cells")?;
@@ -82,7 +93,7 @@ fn counts(mut line: Line<'_>) -> Result<Vec<usize>, Fault> {
         counts.push(count as usize);
     }
     counts.truncate(counts.iter().rposition(|&count| count > 0).map_or(0, |last| last + 1));
-    Ok(counts)
+    Ok((counts, position))
 }
 
 /// Reads the boundary of a cell.

@@ -20,6 +20,15 @@ pub(super) fn reserve(declared: u64) -> usize {
     usize::try_from(declared.min(RESERVE)).unwrap_or(0)
 }
 
+/// The most points that an input may have beyond a few for each time that it names one.
+const FREE_POINTS: usize = 1 << 22;
+
+/// Whether there may be so many points where one is named so often. A number is no proof of that many points, each of which
+/// will take memory.
+pub(super) const fn may_have(points: usize, named: usize) -> bool {
+    points <= FREE_POINTS || points / 16 <= named
+}
+
 /// Why a cell is refused; the reader knows the place and what the input calls the vertices.
 pub(super) enum Refusal {
     /// The cell repeats the vertex with this number.

@@ -71,15 +71,19 @@ fn open_view(bytes: &[u8]) -> Result<View<'_>, FormatError> {
     })
 }
 
+/// The most simplices that a file may have beyond a few for each of its bytes.
+const FREE_VERTICES: usize = 1 << 24;
+
 /// Checks that bytes in the host's byte order are a complex.
 fn check(path: &Path, bytes: &[u8]) -> Result<(), OpenError> {
     if bytes.is_empty() {
         return Err(OpenError::new(path, OpenErrorKind::Empty));
     }
     let checked = open_view(bytes).map_err(|error| OpenError::new(path, OpenErrorKind::Format(error)))?;
-    // Vertices alone take no bytes, so a small file may promise more of them than any memory has marks for.
+    // Vertices alone take no bytes, so a small file may promise more of them than any memory has marks for. Where there is a
+    // tree, each takes two bytes at least.
     let simplices = with_view!(checked, complex => complex.num_simplices());
-    if simplices as u64 >> 36 != 0 && simplices / 64 > bytes.len() {
+    if simplices > FREE_VERTICES && simplices / 16 > bytes.len() {
         return Err(OpenError::new(path, OpenErrorKind::TooManyVertices { vertices: simplices }));
     }
     Ok(())

@@ -45,6 +45,7 @@ fn errors_name_the_place() {
         ("cells 2 1 1\n+0 -1\n\n +0\n", "x:4:2: cell c3: the boundary of its boundary is"),
         ("cells 2 1\n2147483647*0 1 0\n", "x:2:1: a cell appears too often"),
         ("cells 536870912 1\n", "x:1:17: more than"),
+        ("#\ncells 500000000 1\n+0 -1\n", "x:2:7: 500000000 vertices, but the boundaries have only 2 cells in all"),
     ];
     for (text, expected) in cases {
         let error = read_cells(text.as_bytes(), "x").unwrap_err().to_string();

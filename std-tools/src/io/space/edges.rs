@@ -2,6 +2,7 @@
 //! commas or semicolons; comments run from `#` to the end of the line.
 
 use super::super::error::{ErrorKind, Fault, Position};
+use super::super::intake::may_have;
 use super::super::labels::{LabelTable, canonical};
 use super::super::source::Source;
 use super::super::text::{Line, Word};
@@ -87,6 +88,11 @@ pub(super) fn list(source: &mut Source<'_>, repeated: &mut usize) -> Result<Spac
 }
 
 fn vertex(table: &mut LabelTable, line: &Line<'_>, word: Word<'_>) -> Result<u32, Fault> {
+    if word.bytes.starts_with(b"\"") {
+        return Err(
+            line.unexpected(word, "a vertex label whose quotes stand around all of it; blanks and commas part labels")
+        );
+    }
     let number = match (canonical(word.bytes), std::str::from_utf8(word.bytes)) {
         (Some(integer), _) => table.number_integer(integer),
         (None, Ok(label)) if !label.is_empty() && !label.contains(char::is_control) => table.number(label),
@@ -121,9 +127,6 @@ fn sorted(labels: Labels) -> (Vec<u32>, Labels) {
     (numbers, labels)
 }
 
-/// The most points that a sparse matrix may have beyond a few for each entry: a number is no proof of so many points.
-const FREE_POINTS: usize = 1 << 22;
-
 /// Reads lines `i j distance`, points numbered from 0; those up to the largest number are points.
 pub(super) fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Space, Fault> {
     let (mut edges, mut entries) = (Edges::default(), 0);
@@ -152,7 +155,7 @@ pub(super) fn sparse(source: &mut Source<'_>, repeated: &mut usize) -> Result<Sp
 
 /// A fault, of the largest number of a point, if there are far more points than entries.
 fn check_points(points: usize, entries: usize, last: Position) -> Result<(), Fault> {
-    if points <= FREE_POINTS || points / 16 <= entries {
+    if may_have(points, entries) {
         return Ok(());
     }
     let message = format!(

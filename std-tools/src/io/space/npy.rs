@@ -31,6 +31,7 @@ fn header(source: &mut Source<'_>) -> Result<NpyHeader, Fault> {
     }
     let bytes = source.take(before + length, EXPECTED)?;
     check_numbers(&bytes[before..])?;
+    check_brackets(&bytes[before..])?;
     NpyHeader::from_reader(bytes).map_err(|error| unsupported(format!("not the header of an NPY file: {error}")))
 }
 
@@ -41,6 +42,18 @@ fn check_numbers(header: &[u8]) -> Result<(), Fault> {
     let mut product = numbers.map(|digits| number(digits).map(|number| number.max(1)));
     let fits = product.try_fold(1_u64, |product, number| product.checked_mul(number?));
     fits.map(|_| ()).ok_or_else(|| unsupported("an array of more elements than 64 bits can count"))
+}
+
+/// A fault if there are many brackets: the parser tries each in several ways, so that their nesting takes time that grows
+/// exponentially. The header of an array of numbers has two, one of records more than it has fields.
+fn check_brackets(header: &[u8]) -> Result<(), Fault> {
+    const MOST: usize = 8;
+    if header.iter().filter(|byte| matches!(byte, b'(' | b'[' | b'{')).count() > MOST {
+        let message =
+            "an array of records, or no array: there are more than 8 brackets; points are rows of plain numbers";
+        return Err(unsupported(message));
+    }
+    Ok(())
 }
 
 /// Reads an array as points.

@@ -124,6 +124,10 @@ fn arrays_are_refused_with_the_byte() {
         (array("<c16", "False", "(1, 1)"), "an array of type '<c16'"),
         (array("<f8", "False", huge), "more elements than 64 bits can count"),
         ("nothing".to_owned(), "not the header of an NPY file"),
+        ("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (1,2)}".to_owned(), "an array of records;"),
+        // Parsed, this would take longer than anybody lives.
+        (format!("{{'descr': {}", "{".repeat(60)), "an array of records, or no array"),
+        (array("<f8", "False", &"(".repeat(9000)), "an array of records, or no array"),
     ] {
         let refused = read(&npy(1, &header, &one), SpaceFormat::Npy).unwrap_err();
         assert!(refused.contains(message), "{refused}");
