@@ -128,7 +128,7 @@ fn row(line: &[u8]) -> Option<Vec<Option<f64>>> {
         return None;
     }
     let mut row = Vec::new();
-    let line = Line::new(line, Origin::Line(1));
+    let line = Line::new(line, Origin::Text { line: 1, column: 0 });
     let line = COMMENT.map_or(line.clone(), |mark| line.without_comment(mark));
     let read = fields(line, |_, word| {
         row.push(parse_float(word.bytes));

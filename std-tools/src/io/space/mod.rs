@@ -229,27 +229,28 @@ pub fn read_space(
     options: &SpaceOptions<'_>,
 ) -> Result<(Space, SpaceReport), ReadError> {
     let run = || {
-        let mut source = Source::new(reader, length, options.progress)?;
-        let format = match options.format {
-            Some(format) => format,
-            None => detect::format(&mut source, name, options.is_graph)?,
-        };
-        let mut repeated = 0;
-        let space = match format {
-            SpaceFormat::Points => Space::Points(table::read(&mut source)?),
-            SpaceFormat::Mesh => Space::Points(mesh(&mut source, name)?),
-            SpaceFormat::Npy => Space::Points(npy::read(&mut source)?),
-            SpaceFormat::Pts => Space::Points(binary::pts(&mut source)?),
-            SpaceFormat::Full => Space::Distances(matrix::full(&mut source)?),
-            SpaceFormat::Lower => Space::Distances(matrix::lower(&mut source)?),
-            SpaceFormat::Upper => Space::Distances(matrix::upper(&mut source)?),
-            SpaceFormat::LowerBinary => Space::Distances(binary::lower(&mut source)?),
-            SpaceFormat::Dipha => binary::dipha(&mut source, &mut repeated)?,
-            SpaceFormat::Sparse => edges::sparse(&mut source, &mut repeated)?,
-            SpaceFormat::Edges => edges::list(&mut source, &mut repeated)?,
-            SpaceFormat::Gudhi => gudhi::read(&mut source)?,
-        };
-        Ok((space, SpaceReport { format, compression: source.compression, repeated }))
+        Source::new(reader, length, options.progress)?.reading(|source| {
+            let format = match options.format {
+                Some(format) => format,
+                None => detect::format(source, name, options.is_graph)?,
+            };
+            let mut repeated = 0;
+            let space = match format {
+                SpaceFormat::Points => Space::Points(table::read(source)?),
+                SpaceFormat::Mesh => Space::Points(mesh(source, name)?),
+                SpaceFormat::Npy => Space::Points(npy::read(source)?),
+                SpaceFormat::Pts => Space::Points(binary::pts(source)?),
+                SpaceFormat::Full => Space::Distances(matrix::full(source)?),
+                SpaceFormat::Lower => Space::Distances(matrix::lower(source)?),
+                SpaceFormat::Upper => Space::Distances(matrix::upper(source)?),
+                SpaceFormat::LowerBinary => Space::Distances(binary::lower(source)?),
+                SpaceFormat::Dipha => binary::dipha(source, &mut repeated)?,
+                SpaceFormat::Sparse => edges::sparse(source, &mut repeated)?,
+                SpaceFormat::Edges => edges::list(source, &mut repeated)?,
+                SpaceFormat::Gudhi => gudhi::read(source)?,
+            };
+            Ok((space, SpaceReport { format, compression: source.compression, repeated }))
+        })
     };
     run().map_err(|fault: Fault| fault.in_file(super::displayed(name)))
 }
