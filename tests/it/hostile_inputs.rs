@@ -43,6 +43,14 @@ fn lines_of_a_gigabyte() {
             (Format::Ply, b"ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nend_header\n"),
             (Format::Stl, b"solid a\n"),
             (Format::Msh, b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n"),
+            (Format::Vtk, b"# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"),
+            (Format::Vtu, b"<VTKFile type='PolyData'><Piece NumberOfPoints='1'><Points><DataArray type='Int8'>"),
+            (Format::Vtu, b"<VTKFile type='PolyData'><Piece "),
+            (Format::Medit, b"MeshVersionFormatted 2 Dimension 3 Vertices 9 "),
+            (Format::Mfem, b"MFEM mesh v1.0\nelements\n2\n"),
+            (Format::Tetgen, b"3 3 0 0\n"),
+            (Format::Abaqus, b"*NODE\n"),
+            (Format::Nastran, b"GRID,1\n"),
             (Format::Tops, b"2 1\n0 0\n"),
             (Format::SimplexList, b"1 2\n"),
         ] {
@@ -59,6 +67,8 @@ fn lines_of_a_gigabyte() {
             SpaceFormat::Upper,
             SpaceFormat::Sparse,
             SpaceFormat::Edges,
+            SpaceFormat::Dot,
+            SpaceFormat::GraphMl,
             SpaceFormat::Gudhi,
         ] {
             let mut input = Generated { head: b"", pattern, given: 0, length: GIGABYTE };

@@ -32,6 +32,7 @@ mod source;
 pub mod space;
 mod stl;
 mod tagged;
+mod tags;
 #[cfg(test)]
 mod tests;
 mod tetbin;

@@ -7,7 +7,9 @@
 
 mod binary;
 mod detect;
+mod dot;
 mod edges;
+mod graphml;
 mod gudhi;
 mod matrix;
 mod npy;
@@ -70,6 +72,10 @@ pub enum SpaceFormat {
     Dipha,
     /// The edges of a graph, by labels, in text.
     Edges,
+    /// Graphviz' DOT.
+    Dot,
+    /// GraphML.
+    GraphMl,
     /// The vertices and edges of a complex in the text of GUDHI's `Simplex_tree`, with their values as weights.
     Gudhi,
 }
@@ -88,6 +94,8 @@ impl SpaceFormat {
         Self::LowerBinary,
         Self::Dipha,
         Self::Edges,
+        Self::Dot,
+        Self::GraphMl,
         Self::Gudhi,
     ];
 
@@ -109,6 +117,8 @@ impl SpaceFormat {
             Self::LowerBinary => "lower-binary",
             Self::Dipha => "dipha",
             Self::Edges => "edges",
+            Self::Dot => "dot",
+            Self::GraphMl => "graphml",
             Self::Gudhi => "gudhi",
         }
     }
@@ -120,7 +130,7 @@ impl SpaceFormat {
             Self::Points => {
                 "points, one a line, numbers separated by commas, semicolons or blanks; perhaps a header line"
             }
-            Self::Mesh => "the vertices of a mesh: OFF (also nOFF of any dimension), OBJ, PLY, STL, Gmsh MSH",
+            Self::Mesh => "the vertices of a mesh: OFF (also nOFF of any dimension), OBJ, PLY, VTU, …",
             Self::Npy => "points as the rows of a NumPy array of numbers, .npy",
             Self::Pts => "points in binary: PTS1, 32-bit dimension, 64-bit count, doubles, little-endian",
             Self::Full => "a distance matrix in text, a row a line",
@@ -130,6 +140,8 @@ impl SpaceFormat {
             Self::LowerBinary => "the rows of a distance matrix below the diagonal as 32-bit floats, little-endian",
             Self::Dipha => "DIPHA's distance matrix, full or sparse",
             Self::Edges => "a graph: lines u v or u v weight with any labels; a label alone is a vertex",
+            Self::Dot => "a graph in Graphviz' DOT; weight=… gives the weights of edges",
+            Self::GraphMl => "a graph in GraphML; data called weight give the weights of edges",
             Self::Gudhi => "the graph of a complex: GUDHI's simplex-tree text, lines 0 v value, 1 v w value, …",
         }
     }
@@ -247,6 +259,8 @@ pub fn read_space(
                 SpaceFormat::Dipha => binary::dipha(source, &mut repeated)?,
                 SpaceFormat::Sparse => edges::sparse(source, &mut repeated)?,
                 SpaceFormat::Edges => edges::list(source, &mut repeated)?,
+                SpaceFormat::Dot => dot::read(source, &mut repeated)?,
+                SpaceFormat::GraphMl => graphml::read(source, &mut repeated)?,
                 SpaceFormat::Gudhi => gudhi::read(source)?,
             };
             Ok((space, SpaceReport { format, compression: source.compression, repeated }))

@@ -7,7 +7,6 @@
 mod bytes;
 mod legacy;
 mod shapes;
-mod tags;
 mod xml;
 
 pub(super) use legacy::read as read_legacy;

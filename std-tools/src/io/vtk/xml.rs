@@ -7,10 +7,10 @@
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::intake::Intake;
 use super::super::source::{Source, truncated};
+use super::super::tags::{self, Tag};
 use super::super::words::Words;
 use super::super::{Format, ReadOptions, ReadReport};
 use super::bytes::{Bytes, Layout};
-use super::tags::{self, Tag};
 use super::{Cells, Type, Types, Values};
 use crate::soup::{Labels, Scalars, Soup};
 
@@ -315,10 +315,7 @@ fn append(all: &mut Option<Scalars>, more: Option<&Array>) {
 
 /// Reads a file.
 pub(in super::super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
-    let first = tags::next(source)?.ok_or_else(|| truncated(source.end_of_text(), "the tag VTKFile"))?;
-    if &*first.name != "VTKFile" {
-        return Err(first.unsupported(format!("the first tag is {}, not VTKFile", first.name)));
-    }
+    let first = tags::first(source, "VTKFile")?;
     let (pieces, appended) = (Vec::new(), Vec::new());
     let intake = Intake::new(Format::Vtu, options);
     let mut grid = Grid { layout: layout(&first)?, pieces, appended, intake };

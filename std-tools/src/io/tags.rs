@@ -1,7 +1,7 @@
-//! The tags of an XML file, one after the other, as far as VTK's formats need them; text between tags is the caller's.
+//! The tags of an XML file, one after the other, as far as the formats here need them; text between tags is the caller's.
 
-use super::super::error::{ErrorKind, Fault, Position};
-use super::super::source::{Source, truncated};
+use super::error::{ErrorKind, Fault, Position};
+use super::source::{Source, truncated};
 
 /// The longest tag or comment.
 const MAX_TAG: usize = 1 << 20;
@@ -27,7 +27,7 @@ impl Tag {
     pub(super) fn number(&self, name: &str) -> Result<u64, Fault> {
         let Some(value) = self.get(name) else { return Ok(0) };
         value.trim().parse().map_err(|_| {
-            let found = super::super::error::excerpt(value.as_bytes());
+            let found = super::error::excerpt(value.as_bytes());
             let expected = format!("a number as the value of {name}").into();
             Fault::new(self.position, ErrorKind::Expected { expected, found })
         })
@@ -72,8 +72,47 @@ fn attributes(mut rest: &str) -> Option<Vec<(Box<str>, Box<str>)>> {
         let value = value.trim_start();
         let quote = value.chars().next().filter(|quote| matches!(quote, '"' | '\''))?;
         let (value, after) = value[1..].split_once(quote)?;
-        attributes.push((name.trim_end().into(), value.into()));
+        attributes.push((name.trim_end().into(), unescaped(value).into()));
         rest = after;
+    }
+}
+
+/// A value without the names of characters that may not stand in it.
+fn unescaped(value: &str) -> String {
+    const NAMES: [(&str, char); 5] = [("lt;", '<'), ("gt;", '>'), ("quot;", '"'), ("apos;", '\''), ("amp;", '&')];
+    let mut parts = value.split('&');
+    let mut text = parts.next().unwrap_or("").to_owned();
+    for part in parts {
+        match NAMES.iter().find_map(|(name, c)| Some((*c, part.strip_prefix(name)?))) {
+            Some((c, rest)) => {
+                text.push(c);
+                text.push_str(rest);
+            }
+            None => {
+                text.push('&');
+                text.push_str(part);
+            }
+        }
+    }
+    text
+}
+
+/// Reads the first tag, before which nothing but blanks, comments and declarations may stand; it must have this name.
+pub(super) fn first(source: &mut Source<'_>, name: &'static str) -> Result<Tag, Fault> {
+    let expected = || format!("the tag <{name}>");
+    let begin = source.skip_blanks()?;
+    if begin.is_some_and(|byte| byte != b'<') {
+        let found = super::error::excerpt(source.peek(16)?);
+        let kind = ErrorKind::Expected { expected: expected().into(), found };
+        return Err(Fault::new(source.end_of_text(), kind));
+    }
+    match next(source)? {
+        Some(tag) if *tag.name == *name && !tag.closing => Ok(tag),
+        Some(tag) => {
+            let kind = ErrorKind::Expected { expected: expected().into(), found: tag.name };
+            Err(Fault::new(tag.position, kind))
+        }
+        None => Err(truncated(source.end_of_text(), expected())),
     }
 }
 
@@ -108,7 +147,7 @@ pub(super) fn next(source: &mut Source<'_>) -> Result<Option<Tag>, Fault> {
         let (inner, empty) = inner.strip_suffix('/').map_or((inner, false), |inner| (inner, true));
         let end = inner.find(|c: char| c.is_ascii_whitespace()).unwrap_or(inner.len());
         let Some(attributes) = attributes(&inner[end..]) else {
-            let found = super::super::error::excerpt(text.as_bytes());
+            let found = super::error::excerpt(text.as_bytes());
             let kind = ErrorKind::Expected { expected: "attributes like name=\"value\"".into(), found };
             return Err(Fault::new(position, kind));
         };
