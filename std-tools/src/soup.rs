@@ -36,6 +36,13 @@ impl Labels {
         }
     }
 
+    /// Labels that are integers, all different: numbers where they count up from 0.
+    #[must_use]
+    pub fn from_integers(labels: Vec<u64>) -> Self {
+        let numbered = labels.iter().zip(0..).all(|(&label, number)| label == number);
+        if numbered { Self::Numbered(labels.len()) } else { Self::Integers(labels) }
+    }
+
     /// The number of vertices.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -266,6 +266,10 @@ pub fn space(format: Option<SpaceFormat>, bytes: &[u8]) {
             Ok((space, report)) => {
                 assert_eq!(format.unwrap_or(report.format), report.format);
                 assert_space(&space, bytes.len(), report.compression.is_some());
+                // Names in these may have blanks, which lists of edges do not hold.
+                if matches!(report.format, SpaceFormat::Dot | SpaceFormat::GraphMl) {
+                    continue;
+                }
                 let (format, text) = written(&space, report.format);
                 let options = SpaceOptions { format: Some(format), ..SpaceOptions::default() };
                 let (copy, _) = read_space_bytes(text.as_bytes(), "copy", &options).expect("what was just written");

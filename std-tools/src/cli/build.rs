@@ -10,7 +10,7 @@ use serde::Serialize;
 use sig_core::{Index, IndexWidth, SimplexId};
 use sig_tools::build::external::{Resources, build_to_file};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
-use sig_tools::io::{self as readers, Compression, Format, MergeReport, ReadOptions, ReadReport};
+use sig_tools::io::{self as readers, Compression, Format, MergeReport, ReadOptions, ReadReport, Weld};
 use sig_tools::names::simplex_name;
 use sig_tools::soup::Soup;
 use sig_tools::spool::Spill;
@@ -52,13 +52,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "BITS", value_parser = width_parser())]
     index_bits: Option<IndexWidth>,
 
-    /// Drop the vertices of a mesh that no simplex uses; by default they stay, as simplices of dimension 0
-    #[arg(long)]
-    drop_unused: bool,
-
-    /// Drop simplices that repeat a vertex; by default they are an error
-    #[arg(long)]
-    drop_degenerate: bool,
+    #[command(flatten)]
+    cleaning: Cleaning,
 
     /// Leave out the sections that make finding simplices by vertices fast
     #[arg(long)]
@@ -97,6 +92,30 @@ pub(super) struct Args {
     /// Print a JSON object on what was read and built
     #[arg(long)]
     json: bool,
+}
+
+/// What becomes of what is no part of a complex.
+#[derive(clap::Args)]
+pub(super) struct Cleaning {
+    /// Drop the vertices of a mesh that no simplex uses; by default they stay, as simplices of dimension 0
+    #[arg(long)]
+    pub(super) drop_unused: bool,
+
+    /// Drop simplices that repeat a vertex; by default they are an error
+    #[arg(long)]
+    drop_degenerate: bool,
+
+    /// Which vertices become one: none, those at one place (exact), or those at most DISTANCE apart; by default the corners
+    /// of STL's triangles at one place
+    #[arg(long, value_name = "none|exact|DISTANCE")]
+    weld: Option<Weld>,
+}
+
+impl Cleaning {
+    /// How to read an input of the given format.
+    pub(super) fn options(&self, format: Option<Format>) -> ReadOptions<'static> {
+        ReadOptions { format, drop_degenerate: self.drop_degenerate, weld: self.weld, ..ReadOptions::default() }
+    }
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
@@ -210,8 +229,7 @@ impl Args {
     }
 
     fn read_one(&self, path: &Path, spill: Option<&Spill>) -> Result<(Soup, ReadReport), readers::ReadError> {
-        let options =
-            ReadOptions { format: self.format, drop_degenerate: self.drop_degenerate, spill, ..ReadOptions::default() };
+        let options = ReadOptions { spill, ..self.cleaning.options(self.format) };
         progress::reading(path, |progress| readers::read_path(path, &ReadOptions { progress, ..options }))
     }
 
@@ -223,7 +241,7 @@ impl Args {
                 Order::Hilbert => VertexOrder::Hilbert,
                 Order::Rcm => VertexOrder::Rcm,
             },
-            unused: if self.drop_unused { Unused::Drop } else { Unused::Keep },
+            unused: if self.cleaning.drop_unused { Unused::Drop } else { Unused::Keep },
             max_simplices: self.max_simplices,
             progress: progress::is_watched().then_some(progress),
             ..BuildOptions::default()
@@ -270,7 +288,7 @@ struct OutOfCore {
 }
 
 #[derive(Serialize)]
-struct Input {
+pub(super) struct Input {
     file: String,
     format: &'static str,
     compression: Option<&'static str>,
@@ -280,7 +298,7 @@ struct Input {
     polyhedra: usize,
     split_into: usize,
     degenerate_dropped: usize,
-    welded_corners: usize,
+    welded: usize,
     inner_nodes_dropped: usize,
     ignored: u64,
     ignored_names: Vec<String>,
@@ -294,7 +312,7 @@ struct Renumbered {
 }
 
 impl Input {
-    fn new(path: &Path, report: ReadReport) -> Self {
+    pub(super) fn new(path: &Path, report: ReadReport) -> Self {
         Self {
             file: if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() },
             format: report.format.name(),
@@ -305,14 +323,14 @@ impl Input {
             polyhedra: report.polyhedra,
             split_into: report.split_into,
             degenerate_dropped: report.degenerate_dropped,
-            welded_corners: report.welded_corners,
+            welded: report.welded,
             inner_nodes_dropped: report.inner_nodes_dropped,
             ignored: report.ignored.count,
             ignored_names: report.ignored.names,
         }
     }
 
-    fn log(&self) {
+    pub(super) fn log(&self) {
         let listed: usize = self.simplices.iter().sum();
         let packed = self.compression.map_or(String::new(), |name| format!(", {name}"));
         let (vertices, listed) = (grouped(self.vertices), grouped(listed));
@@ -323,7 +341,7 @@ impl Input {
         let split = format!("polygons and polyhedra, split into {} simplices", grouped(self.split_into));
         note(self.polygons + self.polyhedra, &split);
         note(self.degenerate_dropped, "simplices dropped that repeat a vertex");
-        note(self.welded_corners, "corners welded to one at the same place");
+        note(self.welded, "corners or vertices welded to one at the same place or near");
         note(self.inner_nodes_dropped, "nodes dropped that lie inside elements of higher order");
         if self.ignored > 0 {
             output::log(format_args!(

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use sig_tools::export::{self, ExportError, Format};
 use sig_tools::store::Access;
+use sig_tools::store::atomic::Existing;
 use sig_tools::with_view;
 
-use super::input::How;
+use super::input::{How, Input};
 use super::{UsageError, output};
 
 /// Write a complex in another format
@@ -38,37 +39,37 @@ pub(super) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
-        export(&self.file, &self.how, &self.target, self.format()?)
+        export(&self.file, &self.how, &self.target, format(self.format, &self.target.output, "--format")?)
     }
+}
 
-    fn format(&self) -> Result<Format, UsageError> {
-        if let Some(format) = self.format {
-            return Ok(format);
-        }
-        let path = &self.target.output;
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        extension.and_then(Format::from_name).ok_or_else(|| {
-            let names: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
-            let what = if output::is_stdout(path) {
-                "standard output has no name"
-            } else {
-                "the name does not tell the format"
-            };
-            UsageError(format!("{}: {what}; use --format with one of: {}", path.display(), names.join(", ")))
-        })
+/// The format that an option, if it is given, or the name of the output tells.
+pub(super) fn format(given: Option<Format>, path: &Path, option: &str) -> Result<Format, UsageError> {
+    if let Some(format) = given {
+        return Ok(format);
     }
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.and_then(Format::from_name).ok_or_else(|| {
+        let names: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
+        let what =
+            if output::is_stdout(path) { "standard output has no name" } else { "the name does not tell the format" };
+        UsageError(format!("{}: {what}; use {option} with one of: {}", path.display(), names.join(", ")))
+    })
 }
 
 /// Writes the complex in `file` to the target, and says what is left out.
 pub(super) fn export(file: &Path, how: &How, target: &output::Target, format: Format) -> anyhow::Result<()> {
-    let (path, existing) = (&target.output, target.existing());
-    output::check(path, existing, &[file.to_owned()])?;
+    output::check(&target.output, target.existing(), &[file.to_owned()])?;
     let input = how.open(file, Access::Normal)?;
+    write(&input, &file.display().to_string(), &target.output, target.existing(), format)
+}
+
+/// Writes the complex in an input called `name`, and says what is left out.
+pub(super) fn write(input: &Input, name: &str, path: &Path, existing: Existing, format: Format) -> anyhow::Result<()> {
     let view = input.view();
-    let file = || file.display().to_string();
     // As long as writing, and a damaged file would come out as a mesh that is another.
-    with_view!(view, complex => complex.validate()).with_context(|| format!("{}: damaged; see sig verify", file()))?;
-    with_view!(view, complex => export::check(&complex, format)).with_context(file)?;
+    with_view!(view, complex => complex.validate()).with_context(|| format!("{name}: damaged; see sig verify"))?;
+    with_view!(view, complex => export::check(&complex, format)).with_context(|| name.to_owned())?;
     let mut notes = Vec::new();
     output::to_path(path, existing, |out| {
         notes = with_view!(view, complex => export::export(&complex, format, out)).map_err(|error| match error {

@@ -9,10 +9,12 @@ mod collapse;
 mod compare;
 mod completions;
 mod contract;
+mod convert;
 mod expand;
 mod expansion;
 mod export;
 mod extract;
+mod formats;
 mod frozen_output;
 mod generate;
 mod homology;
@@ -36,6 +38,7 @@ use std::process::ExitCode;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{CommandFactory, Parser, Subcommand};
+use sig_tools::io::ReadError;
 use sig_tools::store::atomic;
 
 /// Simplicial complexes in flat arrays: build, inspect, query, check and export them.
@@ -60,6 +63,7 @@ Examples:
   sig homology bunny.sigc               components, tunnels, voids, torsion
   sig verify bunny.sigc                 whether it is whole and right
   sig export bunny.sigc -o bunny.vtu    for ParaView
+  sig convert part.inp part.vtu         from one format to another; sig formats lists them
 
 Exit codes: 0 done; 1 the data say no, or cannot be read or written; 2 wrong command line; 130
 interrupted, and 128 and its number for other signals.";
@@ -82,6 +86,8 @@ enum Command {
     Compare(compare::Args),
     Verify(verify::Args),
     Export(export::Args),
+    Convert(convert::Args),
+    Formats(formats::Args),
     Completions(completions::Args),
     Man(man::Args),
 }
@@ -105,6 +111,8 @@ impl Command {
             Self::Compare(args) => args.run(),
             Self::Verify(args) => args.run(),
             Self::Export(args) => args.run(),
+            Self::Convert(args) => args.run(),
+            Self::Formats(args) => args.run(),
             Self::Completions(args) => args.run(),
             Self::Man(args) => args.run(),
         }
@@ -224,5 +232,8 @@ fn explain(error: &anyhow::Error) -> ExitCode {
         }
     }
     output::log(format_args!("sig: {message}"));
+    if let Some(line) = error.chain().find_map(|cause| cause.downcast_ref::<ReadError>()?.line.as_deref()) {
+        output::log(format_args!("{line}"));
+    }
     ExitCode::from(if error.is::<UsageError>() { 2 } else { 1 })
 }

@@ -85,6 +85,31 @@ impl<'v, V: Relations> Mesh<'v, V> {
         Ok(())
     }
 
+    /// The coordinates of a vertex, filled up with zeros to three.
+    pub(super) fn padded(&self, vertex: VertexId) -> [f64; 3] {
+        let mut point = [0.0; 3];
+        for (value, row) in point.iter_mut().zip(self.row(vertex)) {
+            *value = self.value(row);
+        }
+        point
+    }
+
+    /// Writes the coordinates of a vertex, filled up with zeros to three.
+    pub(super) fn write_padded_point(&self, vertex: VertexId, out: &mut dyn Write) -> io::Result<()> {
+        self.write_point(vertex, out)?;
+        (self.components()..3).try_for_each(|_| out.write_all(b" 0.0"))
+    }
+
+    /// The dimension of the complex; 0 if it is empty.
+    pub(super) fn dim(&self) -> Dim {
+        self.complex.dim().unwrap_or(0)
+    }
+
+    /// The number of top simplices of all dimensions.
+    pub(super) fn num_tops(&self) -> usize {
+        top_simplices(self.complex).count()
+    }
+
     /// Hands each top simplex of a dimension in `dims` to `cell`, as the places of its vertices in an order of its
     /// orientation.
     pub(super) fn cells(

@@ -4,14 +4,21 @@
 //! though the simplices are all there (labels, coordinates) it reports as a [`Note`]. Orientations are those of the
 //! input.
 
+mod gltf;
 mod gudhi;
+mod medit;
 mod mesh;
+mod mfem;
+mod msh;
 mod obj;
 mod off;
 mod ply;
 mod simplex_list;
+mod stl;
 #[cfg(test)]
 mod tests;
+mod tops;
+mod vtk;
 pub(crate) mod vtu;
 
 use std::fmt;
@@ -31,17 +38,45 @@ pub enum Format {
     Obj,
     /// Stanford PLY in text: faces and edges.
     Ply,
+    /// STL in binary: triangles.
+    Stl,
+    /// Gmsh's MSH 2.2 in text: simplices up to dimension 3.
+    Msh,
+    /// MEDIT's mesh format in text: simplices up to dimension 3.
+    Medit,
+    /// MFEM's mesh format: simplices of one dimension up to 3.
+    Mfem,
+    /// VTK's legacy format in text: simplices up to dimension 3.
+    Vtk,
     /// One top simplex a line by its labels: any dimension.
     SimplexList,
     /// VTK's unstructured grid for ParaView: tetrahedra, triangles, lines, vertices, all in one grid.
     Vtu,
+    /// glTF 2.0, for viewers: what is seen of a complex.
+    Gltf,
+    /// Points, and top simplices of any dimension, in text.
+    Tops,
     /// GUDHI's simplex-tree text: all simplices with their filtration values.
     Gudhi,
 }
 
 impl Format {
     /// All formats, in the order in which help texts list them.
-    pub const ALL: &'static [Self] = &[Self::Off, Self::Obj, Self::Ply, Self::SimplexList, Self::Vtu, Self::Gudhi];
+    pub const ALL: &'static [Self] = &[
+        Self::Off,
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::Msh,
+        Self::Vtk,
+        Self::Vtu,
+        Self::Medit,
+        Self::Mfem,
+        Self::Gltf,
+        Self::Tops,
+        Self::SimplexList,
+        Self::Gudhi,
+    ];
 
     /// The name of the format on a command line.
     #[must_use]
@@ -50,8 +85,15 @@ impl Format {
             Self::Off => "off",
             Self::Obj => "obj",
             Self::Ply => "ply",
-            Self::SimplexList => "simplices",
+            Self::Stl => "stl",
+            Self::Msh => "msh",
+            Self::Vtk => "vtk",
             Self::Vtu => "vtu",
+            Self::Medit => "medit",
+            Self::Mfem => "mfem",
+            Self::Gltf => "gltf",
+            Self::Tops => "tops",
+            Self::SimplexList => "simplices",
             Self::Gudhi => "gudhi",
         }
     }
@@ -63,8 +105,15 @@ impl Format {
             Self::Off => &["off"],
             Self::Obj => &["obj"],
             Self::Ply => &["ply"],
-            Self::SimplexList => &["simplices", "facets", "lst", "txt"],
+            Self::Stl => &["stl"],
+            Self::Msh => &["msh"],
+            Self::Vtk => &["vtk"],
             Self::Vtu => &["vtu"],
+            Self::Medit => &["mesh"],
+            Self::Mfem => &["mfem"],
+            Self::Gltf => &["gltf"],
+            Self::Tops => &["tops"],
+            Self::SimplexList => &["simplices", "facets", "lst", "txt"],
             Self::Gudhi => &["gudhi"],
         }
     }
@@ -76,9 +125,31 @@ impl Format {
             Self::Off => "Geomview OFF: triangles and edges",
             Self::Obj => "Wavefront OBJ: triangles, lines and points",
             Self::Ply => "Stanford PLY in text: triangles and edges",
-            Self::SimplexList => "one top simplex a line by its vertex labels: any dimension, no coordinates",
+            Self::Stl => "STL in binary: triangles",
+            Self::Msh => "Gmsh MSH 2.2 in text: tetrahedra, triangles, lines and points",
+            Self::Vtk => "legacy VTK in text: tetrahedra, triangles, lines and vertices",
             Self::Vtu => "VTK unstructured grid, for ParaView: tetrahedra, triangles, lines and vertices",
+            Self::Medit => "MEDIT .mesh in text: tetrahedra, triangles and edges",
+            Self::Mfem => "MFEM mesh v1.0: simplices of one dimension up to 3",
+            Self::Gltf => "glTF 2.0 for viewers: triangles, lines, points, the surface of tetrahedra",
+            Self::Tops => "points and lines k v1 … vk: any dimension",
+            Self::SimplexList => "one top simplex a line by its vertex labels: any dimension, no coordinates",
             Self::Gudhi => "GUDHI's simplex-tree text: all simplices with their filtration values, no coordinates",
+        }
+    }
+
+    /// What the format cannot hold, though all top simplices are there.
+    #[must_use]
+    pub const fn loses(self) -> &'static str {
+        match self {
+            Self::Off | Self::Ply | Self::Medit | Self::Mfem | Self::Tops | Self::Obj => "labels",
+            Self::Stl => "labels, precision beyond 32 bits, vertices that share a place",
+            Self::Msh => "labels but integers from 1",
+            Self::Vtk => "labels",
+            Self::Vtu => "labels but integers",
+            Self::Gltf => "labels, precision beyond 32 bits, what lies inside of solids",
+            Self::SimplexList => "coordinates",
+            Self::Gudhi => "coordinates, labels but numbers",
         }
     }
 
@@ -92,9 +163,9 @@ impl Format {
     /// The greatest dimension of a simplex that the format holds.
     const fn max_dim(self) -> Dim {
         match self {
-            Self::Off | Self::Obj | Self::Ply => 2,
-            Self::Vtu => 3,
-            Self::SimplexList | Self::Gudhi => sig_core::MAX_DIM,
+            Self::Off | Self::Obj | Self::Ply | Self::Stl => 2,
+            Self::Msh | Self::Vtk | Self::Vtu | Self::Medit | Self::Mfem | Self::Gltf => 3,
+            Self::Tops | Self::SimplexList | Self::Gudhi => sig_core::MAX_DIM,
         }
     }
 }
@@ -117,6 +188,18 @@ pub enum ExportError {
         format: Format,
         /// The dimension of the complex.
         dim: Dim,
+    },
+    /// The format holds simplices of one dimension alone, and there are top simplices of others.
+    #[error(
+        "{format} holds top simplices of dimension {dim} alone, and there are some of dimension {other}; use vtu or tops"
+    )]
+    Mixed {
+        /// The format.
+        format: Format,
+        /// The dimension that it holds.
+        dim: Dim,
+        /// Another that is there.
+        other: Dim,
     },
     /// The format needs coordinates, and the complex has none.
     #[error("the complex has no coordinates, without which {format} cannot be written; use simplices")]
@@ -154,6 +237,10 @@ pub enum Note {
     CoordinatesLeftOut,
     /// Points of fewer than three coordinates were filled up with zeros.
     CoordinatesPadded,
+    /// Coordinates are rounded to single precision.
+    CoordinatesRounded,
+    /// Of tetrahedra there is the surface alone.
+    InsideLeftOut,
     /// The vertices are called by their numbers in the file, as the format has no labels but numbers.
     VerticesNumbered,
 }
@@ -166,6 +253,8 @@ impl fmt::Display for Note {
             }
             Self::CoordinatesLeftOut => "coordinates are left out, for the format has none",
             Self::CoordinatesPadded => "points have fewer than three coordinates and are filled up with zeros",
+            Self::CoordinatesRounded => "coordinates are rounded to single precision",
+            Self::InsideLeftOut => "of tetrahedra the triangles that lie in one alone are written, not what is inside",
             Self::VerticesNumbered => "vertices are numbered, for the format has no other labels than numbers",
         })
     }
@@ -191,11 +280,24 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
         None if complex.num_vertices() == 0 => 3,
         None => return Err(ExportError::NoCoordinates { format }),
     };
+    // Those of one dimension alone: STL of 2, MFEM of any.
+    let alone = match format {
+        Format::Stl => Some(2),
+        Format::Mfem => complex.dim(),
+        _ => None,
+    };
+    // An isolated vertex is there all the same, but in STL.
+    let fits = |top: Dim, dim: Dim| top == dim || top == 0 && format != Format::Stl;
+    if let Some(dim) = alone
+        && let Some(top) = crate::tops::top_simplices(complex).find(|top| !fits(top.dim, dim))
+    {
+        return Err(ExportError::Mixed { format, dim, other: top.dim });
+    }
     let holds = match format {
         Format::Obj => components == 3,
-        Format::Ply => (2..=3).contains(&components),
-        Format::Vtu => components <= 3,
-        Format::Off | Format::SimplexList | Format::Gudhi => true,
+        Format::Ply | Format::Medit => (2..=3).contains(&components),
+        Format::Stl | Format::Msh | Format::Vtk | Format::Vtu | Format::Mfem | Format::Gltf => components <= 3,
+        Format::Off | Format::Tops | Format::SimplexList | Format::Gudhi => true,
     };
     if holds { Ok(()) } else { Err(ExportError::Coordinates { format, components }) }
 }
@@ -222,19 +324,26 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
         return Ok(notes);
     }
     let mesh = Mesh::new(complex);
-    let first_number = match format {
-        Format::Off => off::write(&mesh, out).map(|()| Some(0)),
-        Format::Obj => obj::write(&mesh, out).map(|()| Some(1)),
-        Format::Ply => ply::write(&mesh, out).map(|()| Some(0)),
-        Format::Vtu | Format::SimplexList | Format::Gudhi => vtu::write(&mesh, out).map(|()| None),
+    let keeps_labels = match format {
+        Format::Off => off::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Obj => obj::write(&mesh, out).map(|()| mesh.is_numbered_from(1)),
+        Format::Ply => ply::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Stl => stl::write(&mesh, out).map(|()| false),
+        Format::Msh => msh::write(&mesh, out).map(|()| msh::tags(&mesh).is_some()),
+        Format::Vtk => vtk::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Medit => medit::write(&mesh, out).map(|()| mesh.is_numbered_from(1)),
+        Format::Mfem => mfem::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Gltf => gltf::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Tops => tops::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Vtu | Format::SimplexList | Format::Gudhi => {
+            vtu::write(&mesh, out).map(|()| mesh.integer_labels().is_some())
+        }
     }?;
-    match first_number {
-        Some(first) if !mesh.is_numbered_from(first) => notes.push(Note::LabelsLeftOut),
-        None if mesh.integer_labels().is_none() => notes.push(Note::LabelsLeftOut),
-        _ => {}
-    }
-    if format == Format::Vtu && mesh.components() < 3 {
-        notes.push(Note::CoordinatesPadded);
-    }
+    notes.extend((!keeps_labels).then_some(Note::LabelsLeftOut));
+    let is_padded = matches!(format, Format::Stl | Format::Msh | Format::Vtk | Format::Vtu | Format::Gltf);
+    notes.extend((is_padded && mesh.components() < 3).then_some(Note::CoordinatesPadded));
+    let is_single = matches!(format, Format::Stl | Format::Gltf);
+    notes.extend((is_single && !mesh.is_single()).then_some(Note::CoordinatesRounded));
+    notes.extend((format == Format::Gltf && complex.dim() == Some(3)).then_some(Note::InsideLeftOut));
     Ok(notes)
 }

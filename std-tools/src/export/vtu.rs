@@ -57,10 +57,7 @@ fn points<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<(
     let attributes = format!(r#"type="{name}" NumberOfComponents="3""#);
     array(out, &attributes, mesh.num_vertices() * 3 * bytes, |data| {
         for vertex in mesh.vertices() {
-            let mut point = [0.0; 3];
-            for (value, row) in point.iter_mut().zip(mesh.row(vertex)) {
-                *value = mesh.value(row);
-            }
+            let point = mesh.padded(vertex);
             for value in point {
                 if mesh.is_single() {
                     // Exact: it was single before.

@@ -48,7 +48,7 @@ impl CellList {
 /// # Errors
 /// If the input cannot be read or does not follow the grammar, or names a cell that is not there.
 pub(crate) fn read_cell_list(reader: impl Read, name: &str) -> Result<CellList, ReadError> {
-    let run = || read(&mut Source::new(reader, None, None)?);
+    let run = || Source::new(reader, None, None)?.reading(read);
     run().map_err(|fault: Fault| fault.in_file(super::displayed(name)))
 }
 

@@ -3,7 +3,7 @@
 use super::compression::without_suffix;
 use super::error::{ErrorKind, Fault, Position};
 use super::source::Source;
-use super::{Format, gudhi, obj, off, simplex_list, stl, tetbin};
+use super::{Format, abaqus, gudhi, medit, mfem, nastran, obj, off, simplex_list, stl, tetbin, vtk};
 
 /// The format of an input called `name`.
 pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Fault> {
@@ -65,6 +65,18 @@ pub(super) fn certain(head: &[u8], length: Option<u64>) -> Option<Format> {
     let word = first_word(line);
     if head.starts_with(tetbin::MAGIC) {
         Some(Format::Tetbin)
+    } else if vtk::is_legacy(head) {
+        Some(Format::Vtk)
+    } else if vtk::is_xml(head) {
+        Some(Format::Vtu)
+    } else if head.starts_with(mfem::KEYWORD) {
+        Some(Format::Mfem)
+    } else if word.eq_ignore_ascii_case(medit::KEYWORD) {
+        Some(Format::Medit)
+    } else if abaqus::is_input(head) {
+        Some(Format::Abaqus)
+    } else if nastran::is_bulk_data(head) {
+        Some(Format::Nastran)
     } else if word == b"ply" && line == word {
         Some(Format::Ply)
     } else if off::is_keyword(word) {

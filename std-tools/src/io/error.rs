@@ -48,6 +48,48 @@ pub struct ReadError {
     /// What is wrong, and what to do about it.
     #[source]
     pub kind: ErrorKind,
+    /// The line at that place, if it is text and was still at hand.
+    pub line: Option<Box<Excerpt>>,
+}
+
+/// A part of a line, as text that shows everything, and how far into it a place is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Excerpt {
+    /// The number of the line, from 1.
+    pub line: u64,
+    /// The line, cut where it is long, without control characters.
+    pub text: String,
+    /// The characters of `text` before the place.
+    pub before: usize,
+}
+
+impl Excerpt {
+    /// What is kept of a line before and after the place.
+    const BEFORE: usize = 60;
+    const AFTER: usize = 40;
+
+    /// An excerpt of a line around its byte `at`.
+    pub(super) fn new(line: u64, bytes: &[u8], at: usize) -> Self {
+        let at = at.min(bytes.len());
+        let (start, end) = (at.saturating_sub(Self::BEFORE), bytes.len().min(at + Self::AFTER));
+        let dots = if start > 0 { "…" } else { "" };
+        let shown = |bytes: &[u8]| {
+            let text = String::from_utf8_lossy(bytes).replace(['\t', '\r'], " ");
+            text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect::<String>()
+        };
+        let before = dots.to_owned() + &shown(&bytes[start..at]);
+        let dots = if end < bytes.len() { "…" } else { "" };
+        let text = format!("{before}{}{dots}", shown(&bytes[at..end]));
+        Self { line, text: text.trim_end().into(), before: before.chars().count() }
+    }
+}
+
+impl fmt::Display for Excerpt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = self.line.to_string();
+        let (margin, indent) = (number.len(), self.before);
+        write!(f, "  {number} | {}\n  {:margin$} | {:indent$}^", self.text, "", "")
+    }
 }
 
 /// What is wrong with an input.
@@ -174,16 +216,26 @@ fn space_names() -> String {
 ///
 /// Boxed, so that the results of the innermost parsing functions stay small.
 #[derive(Debug)]
-pub(super) struct Fault(Box<(Position, ErrorKind)>);
+pub(super) struct Fault(Box<(Position, ErrorKind, Option<Box<Excerpt>>)>);
 
 impl Fault {
     pub(super) fn new(position: Position, kind: ErrorKind) -> Self {
-        Self(Box::new((position, kind)))
+        Self(Box::new((position, kind, None)))
+    }
+
+    pub(super) fn position(&self) -> Position {
+        self.0.0
+    }
+
+    /// The fault with the line in which it is.
+    pub(super) fn showing(mut self, line: Option<Excerpt>) -> Self {
+        self.0.2 = line.map(Box::new);
+        self
     }
 
     pub(super) fn in_file(self, file: &str) -> ReadError {
-        let (position, kind) = *self.0;
-        ReadError { file: file.to_owned(), position, kind }
+        let (position, kind, line) = *self.0;
+        ReadError { file: file.to_owned(), position, kind, line }
     }
 }
 

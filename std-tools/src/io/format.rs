@@ -16,6 +16,20 @@ pub enum Format {
     Stl,
     /// Gmsh's MSH 2.2 and 4.1, in text and binary.
     Msh,
+    /// VTK's legacy format, in text and binary.
+    Vtk,
+    /// VTK's XML formats for unstructured grids and poly data.
+    Vtu,
+    /// MEDIT's mesh format, in text.
+    Medit,
+    /// MFEM's mesh format.
+    Mfem,
+    /// TetGen's files of nodes, elements, faces and edges.
+    Tetgen,
+    /// Abaqus' input files.
+    Abaqus,
+    /// Nastran's bulk data.
+    Nastran,
     /// Tetrahedra in binary behind `TETB`.
     Tetbin,
     /// Points, and simplices of any dimension, in text.
@@ -33,8 +47,23 @@ struct Facts {
 
 impl Format {
     /// All formats, in the order in which help texts list them.
-    pub const ALL: &'static [Self] =
-        &[Self::Off, Self::Obj, Self::Ply, Self::Stl, Self::Msh, Self::Tetbin, Self::Tops, Self::SimplexList];
+    pub const ALL: &'static [Self] = &[
+        Self::Off,
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::Msh,
+        Self::Vtk,
+        Self::Vtu,
+        Self::Medit,
+        Self::Mfem,
+        Self::Tetgen,
+        Self::Abaqus,
+        Self::Nastran,
+        Self::Tetbin,
+        Self::Tops,
+        Self::SimplexList,
+    ];
 
     const fn facts(self) -> Facts {
         match self {
@@ -60,6 +89,37 @@ impl Format {
                 name: "msh",
                 extensions: &["msh", "msh2", "msh4", "gmsh"],
                 description: "Gmsh MSH 2.2 and 4.1, in text or binary, cells of all dimensions",
+            },
+            Self::Vtk => Facts {
+                name: "vtk",
+                extensions: &["vtk"],
+                description: "legacy VTK, in text or binary: unstructured grids and poly data",
+            },
+            Self::Vtu => Facts {
+                name: "vtu",
+                extensions: &["vtu", "vtp"],
+                description: "VTK's XML: unstructured grids and poly data, inline or appended, plain or zlib",
+            },
+            Self::Medit => Facts {
+                name: "medit",
+                extensions: &["mesh"],
+                description: "MEDIT .mesh in text, cells of all dimensions",
+            },
+            Self::Mfem => {
+                Facts { name: "mfem", extensions: &["mfem"], description: "MFEM mesh v1.x, cells of all dimensions" }
+            }
+            Self::Tetgen => Facts {
+                name: "tetgen",
+                extensions: &["node", "ele", "face", "edge"],
+                description: "TetGen .node, .ele, .face, .edge: one of them, with those beside it that it needs",
+            },
+            Self::Abaqus => {
+                Facts { name: "abaqus", extensions: &["inp"], description: "Abaqus .inp: nodes, solids, shells, beams" }
+            }
+            Self::Nastran => Facts {
+                name: "nastran",
+                extensions: &["bdf", "nas"],
+                description: "Nastran bulk data: nodes, solids, shells, beams, in free or fixed fields",
             },
             Self::Tetbin => Facts {
                 name: "tetbin",

@@ -26,7 +26,7 @@ pub(crate) fn read_filtered(
     progress: Option<&(dyn Fn(u64) + Sync)>,
     receive: &mut Receiver<'_>,
 ) -> Result<(), ReadError> {
-    let run = || each(&mut Source::new(reader, None, progress)?, receive);
+    let run = || Source::new(reader, None, progress)?.reading(|source| each(source, receive));
     run().map_err(|fault: Fault| fault.in_file(super::displayed(name)))
 }
 

@@ -5,6 +5,7 @@ use sig_core::{Dim, MAX_DIM};
 use super::cone::{self, Polyhedron};
 use super::error::ErrorKind;
 use super::report::ReadReport;
+use super::shape::{Corners, Shape};
 use super::{Format, ReadOptions};
 use crate::soup::{Coordinates, Labels, Scalars, Soup};
 use crate::spool::Spill;
@@ -54,6 +55,8 @@ pub(super) struct Intake {
     spill: Option<Spill>,
     pub(super) report: ReadReport,
     drop_degenerate: bool,
+    /// Whether each vertex lies inside a cell of higher order; short of those that do not.
+    inner: Vec<bool>,
 }
 
 impl Intake {
@@ -63,6 +66,7 @@ impl Intake {
             spill: options.spill.cloned(),
             report: ReadReport::new(format),
             drop_degenerate: options.drop_degenerate,
+            inner: Vec::new(),
         }
     }
 
@@ -101,6 +105,39 @@ impl Intake {
         self.report.polyhedra += 1;
         shape.split(corners, label, |tetrahedron| self.piece(&tetrahedron));
         Ok(())
+    }
+
+    /// Adds the triangles of a strip. Those that repeat a vertex are how strips turn; they are dropped and counted whatever
+    /// the options.
+    pub(super) fn strip(&mut self, vertices: &[u32]) -> Result<(), Refusal> {
+        for (at, triangle) in vertices.windows(3).enumerate() {
+            let &[a, b, c] = triangle else { continue };
+            let oriented = if at % 2 == 0 { [a, b, c] } else { [b, a, c] };
+            if a == b || b == c || a == c {
+                self.report.degenerate_dropped += 1;
+            } else {
+                self.simplex(&oriented)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a cell by its nodes, of which the corners come first; the others are vertices only if they are corners of
+    /// another cell, or if no cell has them.
+    pub(super) fn element(&mut self, shape: Shape, nodes: &[u32], label: impl Fn(u32) -> u64) -> Result<(), Refusal> {
+        let (corners, inner) = nodes.split_at(shape.num_corners.min(nodes.len()));
+        for &node in inner {
+            let node = node as usize;
+            if node >= self.inner.len() {
+                self.inner.resize(node + 1, false);
+            }
+            self.inner[node] = true;
+        }
+        match shape.corners {
+            Corners::Simplex => self.simplex(corners),
+            Corners::Polygon => self.polygon(corners, label),
+            Corners::Polyhedron(polyhedron) => self.polyhedron(polyhedron, corners, label),
+        }
     }
 
     fn check(&self, cell: &'static str, vertices: &[u32]) -> Result<(), Refusal> {
@@ -172,10 +209,21 @@ impl Intake {
     /// The soup, now that the vertices are known too; without simplices if they are spilled.
     pub(super) fn finish(
         mut self,
-        labels: Labels,
+        mut labels: Labels,
         declared: bool,
         coordinates: Option<(usize, Scalars)>,
     ) -> (Soup, ReadReport) {
+        let mut coordinates = coordinates.map(|(dim, values)| Coordinates { dim, values });
+        if !self.inner.is_empty() {
+            let mut stays = self.used(labels.len());
+            // A node that no cell has was declared all the same.
+            for (stays, inner) in stays.iter_mut().zip(self.inner.iter().chain(std::iter::repeat(&false))) {
+                *stays |= !inner;
+            }
+            self.report.inner_nodes_dropped = stays.iter().filter(|&&stays| !stays).count();
+            self.renumber(&stays);
+            (labels, coordinates) = retained(labels, coordinates, &stays);
+        }
         (0..self.simplices.len()).for_each(|dim| self.spill(dim));
         let Self { simplices, spill, mut report, .. } = self;
         report.vertices = labels.len();
@@ -183,7 +231,42 @@ impl Intake {
             Some(spill) => spill.counts(),
             None => simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).collect(),
         };
-        let coordinates = coordinates.map(|(dim, values)| Coordinates { dim, values });
         (Soup { labels, declared, coordinates, simplices }, report)
     }
+}
+
+/// Labels and coordinates of the vertices that stay. Those that were numbered are numbered anew only if none is left out
+/// before another.
+pub(super) fn retained(
+    labels: Labels,
+    coordinates: Option<Coordinates>,
+    stays: &[bool],
+) -> (Labels, Option<Coordinates>) {
+    fn retain<T>(rows: &mut Vec<T>, width: usize, stays: &[bool]) {
+        let mut each = stays.iter().flat_map(|stays| std::iter::repeat_n(stays, width));
+        rows.retain(|_| each.next() == Some(&true));
+    }
+    let labels = match labels {
+        Labels::Numbered(count) => {
+            let mut numbers = (0..count as u64).collect();
+            retain(&mut numbers, 1, stays);
+            Labels::from_integers(numbers)
+        }
+        Labels::Integers(mut labels) => {
+            retain(&mut labels, 1, stays);
+            Labels::from_integers(labels)
+        }
+        Labels::Tokens(mut labels) => {
+            retain(&mut labels, 1, stays);
+            Labels::Tokens(labels)
+        }
+    };
+    let coordinates = coordinates.map(|mut coordinates| {
+        match &mut coordinates.values {
+            Scalars::F32(values) => retain(values, coordinates.dim, stays),
+            Scalars::F64(values) => retain(values, coordinates.dim, stays),
+        }
+        coordinates
+    });
+    (labels, coordinates)
 }

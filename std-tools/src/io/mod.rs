@@ -7,6 +7,7 @@
 //!
 //! `io` knows files and soups; it knows nothing of complexes.
 
+mod abaqus;
 pub(crate) mod cells;
 mod compression;
 mod cone;
@@ -16,21 +17,31 @@ mod format;
 pub(crate) mod gudhi;
 mod intake;
 mod labels;
+mod medit;
 mod merge;
+mod mfem;
 mod msh;
+mod nastran;
 mod obj;
 mod off;
 mod ply;
 mod report;
+mod shape;
 mod simplex_list;
 mod source;
 pub mod space;
 mod stl;
+mod tagged;
+mod tags;
 #[cfg(test)]
 mod tests;
 mod tetbin;
+mod tetgen;
 mod text;
 mod tops;
+mod vtk;
+mod weld;
+mod words;
 
 use std::fmt;
 use std::fs::File;
@@ -38,10 +49,11 @@ use std::io::Read;
 use std::path::Path;
 
 pub use compression::Compression;
-pub use error::{ErrorKind, Position, ReadError};
+pub use error::{ErrorKind, Excerpt, Position, ReadError};
 pub use format::Format;
 pub use merge::{MergeError, MergeReport, Renumbered, merge};
 pub use report::{Ignored, ReadReport};
+pub use weld::Weld;
 
 use crate::soup::Soup;
 use crate::spool::Spill;
@@ -57,6 +69,8 @@ pub struct ReadOptions<'a> {
     pub drop_degenerate: bool,
     /// Where the simplices go instead of memory, for a complex larger than that; the soup then has none.
     pub spill: Option<&'a Spill>,
+    /// Which vertices become one; by default the corners of STL's triangles with equal coordinates, and no others.
+    pub weld: Option<Weld>,
     /// Called now and then with the number of bytes read from the input, before decompression.
     pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
 }
@@ -67,6 +81,7 @@ impl fmt::Debug for ReadOptions<'_> {
             .field("format", &self.format)
             .field("drop_degenerate", &self.drop_degenerate)
             .field("spill", &self.spill.is_some())
+            .field("weld", &self.weld)
             .field("progress", &self.progress.is_some())
             .finish()
     }
@@ -79,7 +94,14 @@ impl fmt::Debug for ReadOptions<'_> {
 /// # Errors
 /// If the file cannot be read, if its format is not known, or if it breaks the rules of its format.
 pub fn read_path(path: impl AsRef<Path>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), ReadError> {
-    with_path(path.as_ref(), |reader, length, name| read_sized(reader, length, name, options))
+    let path = path.as_ref();
+    let name = path.to_string_lossy();
+    // The one format whose meshes are several files.
+    if name != "-" && options.format.or_else(|| detect::by_name(&name)) == Some(Format::Tetgen) {
+        let read = tetgen::read_files(path, options)?;
+        return welded(read, options).map_err(|fault| fault.in_file(&name));
+    }
+    with_path(path, |reader, length, name| read_sized(reader, length, name, options))
 }
 
 /// Opens the file at `path`, or standard input if `path` is `-`, and reads it by `read`, which is told the length, if it
@@ -129,14 +151,15 @@ fn read_sized(
     options: &ReadOptions<'_>,
 ) -> Result<(Soup, ReadReport), ReadError> {
     let run = || {
-        let mut source = Source::new(reader, length, options.progress)?;
-        let format = match options.format {
-            Some(format) => format,
-            None => detect::format(&mut source, name)?,
-        };
-        let (soup, mut report) = read_as(format, &mut source, options)?;
-        report.compression = source.compression;
-        Ok((soup, report))
+        Source::new(reader, length, options.progress)?.reading(|source| {
+            let format = match options.format {
+                Some(format) => format,
+                None => detect::format(source, name)?,
+            };
+            let (soup, mut report) = read_as(format, source, options)?;
+            report.compression = source.compression;
+            welded((soup, report), options)
+        })
     };
     run().map_err(|fault: Fault| fault.in_file(displayed(name)))
 }
@@ -149,8 +172,27 @@ fn read_as(format: Format, source: &mut Source<'_>, options: &ReadOptions<'_>) -
         Format::Ply => ply::read(source, options),
         Format::Stl => stl::read(source, options),
         Format::Msh => msh::read(source, options),
+        Format::Vtk => vtk::read_legacy(source, options),
+        Format::Vtu => vtk::read_xml(source, options),
+        Format::Medit => medit::read(source, options),
+        Format::Mfem => mfem::read(source, options),
+        Format::Tetgen => tetgen::read(source, options),
+        Format::Abaqus => abaqus::read(source, options),
+        Format::Nastran => nastran::read(source, options),
         Format::Tetbin => tetbin::read(source, options),
         Format::Tops => tops::read(source, options),
         Format::SimplexList => simplex_list::read(source, options),
     }
+}
+
+/// Welds what was read, if so told.
+fn welded((mut soup, mut report): (Soup, ReadReport), options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
+    if let Some(weld) = options.weld {
+        if options.spill.is_some() && weld != Weld::None {
+            let message = "vertices are welded in memory alone; convert the mesh first, or build without a limit";
+            return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+        }
+        weld::weld(&mut soup, &mut report, weld, options.drop_degenerate)?;
+    }
+    Ok((soup, report))
 }

@@ -438,8 +438,7 @@ impl Ply {
         }
     }
 
-    /// Takes in triangle strips, which −1 separates. Triangles that repeat a vertex are how strips turn; they are
-    /// dropped and counted whatever the options.
+    /// Takes in triangle strips, which −1 separates.
     fn strips(&mut self, list: &[i64], place: &Place<'_>) -> Result<(), Fault> {
         let mut first = 0;
         for strip in list.split(|&index| index == -1) {
@@ -448,15 +447,7 @@ impl Ply {
                 let vertex = self.vertex(index, || place.item(first + at))?;
                 self.word.push(vertex);
             }
-            for (at, triangle) in self.word.windows(3).enumerate() {
-                let &[a, b, c] = triangle else { continue };
-                let oriented = if at % 2 == 0 { [a, b, c] } else { [b, a, c] };
-                if a == b || b == c || a == c {
-                    self.intake.report.degenerate_dropped += 1;
-                } else {
-                    self.intake.simplex(&oriented).map_err(|refusal| refused(refusal, place))?;
-                }
-            }
+            self.intake.strip(&self.word).map_err(|refusal| refused(refusal, place))?;
             first += strip.len() + 1;
         }
         Ok(())

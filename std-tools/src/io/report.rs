@@ -22,8 +22,8 @@ pub struct ReadReport {
     pub split_into: usize,
     /// Simplices dropped because they repeat a vertex.
     pub degenerate_dropped: usize,
-    /// Facet corners (STL) that were welded to an earlier corner with the same coordinates.
-    pub welded_corners: usize,
+    /// Facet corners (STL), and vertices if so told, that were welded to an earlier one.
+    pub welded: usize,
     /// Nodes left out because they lie inside edges, faces or volumes of higher-order elements, whose corners alone
     /// are vertices (MSH).
     pub inner_nodes_dropped: usize,
@@ -42,7 +42,7 @@ impl ReadReport {
             polyhedra: 0,
             split_into: 0,
             degenerate_dropped: 0,
-            welded_corners: 0,
+            welded: 0,
             inner_nodes_dropped: 0,
             ignored: Ignored::default(),
         }

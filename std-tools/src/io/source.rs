@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::io::{self, Read};
 
 use super::compression::Compression;
-use super::error::{ErrorKind, Fault, Position, excerpt};
+use super::error::{ErrorKind, Excerpt, Fault, Position, excerpt};
 use super::text::{Line, Origin};
 
 /// Bytes asked from the reader at a time; also the most that detection may look at.
@@ -47,8 +47,8 @@ pub(super) struct Source<'a> {
     base: u64,
     /// Lines ended so far.
     lines: u64,
-    /// The length of the last line, if no line end closed it.
-    unended: Option<usize>,
+    /// The byte of the input at which the line at hand begins.
+    line_begin: u64,
     /// The length of the (uncompressed) input, if known beforehand.
     pub(super) length: Option<u64>,
     /// How the input is compressed, if it is.
@@ -74,6 +74,7 @@ impl<'a> Source<'a> {
         // A byte order mark is no part of the text: it must not stick to the first word.
         if source.peek(3)? == "\u{feff}".as_bytes() {
             source.start += 3;
+            source.line_begin = source.offset();
         }
         Ok(source)
     }
@@ -87,7 +88,7 @@ impl<'a> Source<'a> {
             exhausted: false,
             base: 0,
             lines: 0,
-            unended: None,
+            line_begin: 0,
             length,
             compression: None,
             binary: false,
@@ -228,6 +229,14 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// Passes over the next line, whatever is in it; whether that is nothing but blanks, `None` at the end of the input.
+    pub(super) fn next_line(&mut self) -> Result<Option<bool>, Fault> {
+        let Some(length) = self.line_length(0)? else { return Ok(None) };
+        let is_empty = self.buffer[self.start..self.start + length].trim_ascii().is_empty();
+        self.hand_out(length);
+        Ok(Some(is_empty))
+    }
+
     /// Like [`Self::next_content`], a fault at the end of the input.
     pub(super) fn need_content(&mut self, comment: Option<u8>, expected: &'static str) -> Result<Line<'_>, Fault> {
         let end = self.end_of_text();
@@ -290,16 +299,153 @@ impl<'a> Source<'a> {
     /// Consumes a line of the given length, and its line end if it has one.
     fn hand_out(&mut self, length: usize) -> Line<'_> {
         let text = self.start..self.start + length;
-        let origin = if self.binary { Origin::Byte(self.offset()) } else { Origin::Line(self.lines + 1) };
+        let origin = self.origin();
+        self.start = text.end;
         if text.end < self.end {
-            self.start = text.end + 1;
+            self.start += 1;
             self.lines += 1;
-            self.unended = None;
-        } else {
-            self.start = text.end;
-            self.unended = Some(length);
+            self.line_begin = self.offset();
         }
         Line::new(&self.buffer[text], origin)
+    }
+
+    /// What places in text that begins with the next byte are counted from.
+    fn origin(&self) -> Origin {
+        if self.binary {
+            return Origin::Byte(self.offset());
+        }
+        Origin::Text { line: self.lines + 1, column: self.offset() - self.line_begin }
+    }
+
+    /// Passes over blanks and line ends up to the next byte of another kind, which is told; `None` at the end.
+    pub(super) fn skip_blanks(&mut self) -> Result<Option<u8>, Fault> {
+        let mut passed = 0;
+        loop {
+            for at in self.start..self.end {
+                match self.buffer[at] {
+                    b'\n' => {
+                        self.lines += 1;
+                        self.line_begin = self.base + at as u64 + 1;
+                        passed = 0;
+                    }
+                    byte if byte.is_ascii_whitespace() => passed += 1,
+                    byte => {
+                        self.start = at;
+                        return Ok(Some(byte));
+                    }
+                }
+            }
+            self.start = self.end;
+            if passed > MAX_LINE {
+                return Err(self.too_long());
+            }
+            if self.exhausted {
+                return Ok(None);
+            }
+            self.refill()?;
+        }
+    }
+
+    /// The next word, on whatever line it stands, as a line of its own. Words end before `stop`, at which there is none;
+    /// comments, which `comment` begins, are passed over.
+    pub(super) fn next_word(&mut self, comment: Option<u8>, stop: Option<u8>) -> Result<Option<Line<'_>>, Fault> {
+        loop {
+            match self.skip_blanks()? {
+                None => return Ok(None),
+                first if first == comment => self.skip_line()?,
+                first if first == stop => return Ok(None),
+                Some(_) => break,
+            }
+        }
+        let mut length = 1;
+        loop {
+            let unread = &self.buffer[self.start..self.end];
+            let is_end = |byte: &u8| byte.is_ascii_whitespace() || Some(*byte) == stop;
+            let found = unread[length..].iter().position(is_end);
+            length = found.map_or(unread.len(), |found| length + found);
+            if found.is_some() || self.exhausted {
+                break;
+            }
+            if length > MAX_LINE {
+                return Err(self.too_long());
+            }
+            self.refill()?;
+        }
+        let (word, origin) = (self.start..self.start + length, self.origin());
+        self.start = word.end;
+        Ok(Some(Line::new(&self.buffer[word], origin)))
+    }
+
+    /// Like [`Self::next_word`], a fault if there is none.
+    pub(super) fn need_word(
+        &mut self,
+        comment: Option<u8>,
+        stop: Option<u8>,
+        expected: &'static str,
+    ) -> Result<Line<'_>, Fault> {
+        // The two borrows of a word that is there, and of the place where none is, must not meet.
+        if !self.has_word(comment, stop)? {
+            return Err(match self.skip_blanks()? {
+                None => truncated(self.end_of_text(), expected),
+                Some(_) => {
+                    let found = excerpt(self.peek(1)?);
+                    Fault::new(self.end_of_text(), ErrorKind::Expected { expected: expected.into(), found })
+                }
+            });
+        }
+        let end = self.end_of_text();
+        self.next_word(comment, stop)?.ok_or_else(|| truncated(end, expected))
+    }
+
+    /// Whether a word comes before `stop`; blanks and comments before it are passed over.
+    pub(super) fn has_word(&mut self, comment: Option<u8>, stop: Option<u8>) -> Result<bool, Fault> {
+        loop {
+            match self.skip_blanks()? {
+                None => return Ok(false),
+                first if first == comment => self.skip_line()?,
+                first => return Ok(first != stop),
+            }
+        }
+    }
+
+    /// Passes over the rest of the line.
+    fn skip_line(&mut self) -> Result<(), Fault> {
+        match self.line_length(0)? {
+            Some(length) => drop(self.hand_out(length)),
+            None => self.start = self.end,
+        }
+        Ok(())
+    }
+
+    /// Passes over `count` bytes of the buffer, counting lines.
+    pub(super) fn pass(&mut self, count: usize) {
+        let passed = &self.buffer[self.start..self.end.min(self.start + count)];
+        self.lines += memchr::memchr_iter(b'\n', passed).count() as u64;
+        if let Some(last) = memchr::memrchr(b'\n', passed) {
+            self.line_begin = self.base + (self.start + last) as u64 + 1;
+        }
+        self.start += passed.len();
+    }
+
+    /// Passes over all up to `mark`, which is not consumed, counting lines; whether it is there.
+    pub(super) fn skip_to(&mut self, mark: u8) -> Result<bool, Fault> {
+        loop {
+            let unread = self.peek(1)?;
+            if unread.is_empty() {
+                return Ok(false);
+            }
+            let unread = &self.buffer[self.start..self.end];
+            let found = memchr::memchr(mark, unread);
+            let passed = found.unwrap_or(unread.len());
+            self.pass(passed);
+            if found.is_some() {
+                return Ok(true);
+            }
+        }
+    }
+
+    fn too_long(&self) -> Fault {
+        Fault::new(self.end_of_text(), ErrorKind::LineTooLong { limit: MAX_LINE })
     }
 
     /// Passes over everything up to a line that starts with `mark`, which is not consumed; whether there is one.
@@ -312,24 +458,48 @@ impl<'a> Source<'a> {
                 return Ok(true);
             }
             if unread.is_empty() {
-                self.unended = (passed > 0).then_some(passed);
                 return Ok(false);
             }
             let unread = &self.buffer[self.start..self.end];
             let found = memchr::memchr(b'\n', unread);
             passed = if found.is_some() { 0 } else { passed + unread.len() };
-            self.lines += u64::from(found.is_some());
-            self.start += found.map_or(unread.len(), |found| found + 1);
+            let passed_now = found.map_or(unread.len(), |found| found + 1);
+            self.pass(passed_now);
         }
     }
 
-    /// The place just after the last byte of text.
-    pub(super) fn end_of_text(&self) -> Position {
-        match self.unended {
-            _ if self.binary => self.byte(),
-            Some(length) => Position::Text { line: self.lines + 1, column: length as u64 + 1 },
-            None => Position::Text { line: self.lines + 1, column: 1 },
+    /// What `read` makes of the input; a fault with the line in which it is, if that is still in the buffer.
+    pub(super) fn reading<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+        read(self).map_err(|fault| {
+            let line = self.excerpt(fault.position());
+            fault.showing(line)
+        })
+    }
+
+    /// The line of a place in text, if it is still in the buffer.
+    fn excerpt(&self, position: Position) -> Option<Excerpt> {
+        let Position::Text { line, column } = position else { return None };
+        let mut start = usize::try_from(self.line_begin.checked_sub(self.base)?).ok()?;
+        for _ in line..self.lines + 1 {
+            // Past the end of the line before.
+            let before = self.buffer.get(..start.checked_sub(1)?)?;
+            start = memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
         }
+        // The first line of the buffer may have lost its beginning.
+        if start == 0 && self.base > 0 || line > self.lines + 1 {
+            return None;
+        }
+        let rest = self.buffer.get(start..self.end)?;
+        let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+        Some(Excerpt::new(line, &rest[..length], usize::try_from(column).ok()?.checked_sub(1)?))
+    }
+
+    /// The place of the next byte, as text where lines can be counted.
+    pub(super) fn end_of_text(&self) -> Position {
+        if self.binary {
+            return self.byte();
+        }
+        Position::Text { line: self.lines + 1, column: self.offset() - self.line_begin + 1 }
     }
 }
 

@@ -42,15 +42,21 @@ struct Weld {
     numbers: HashMap<[u32; 3], u32>,
     values: Vec<f32>,
     welded: usize,
+    /// Whether each corner is a vertex of its own.
+    apart: bool,
 }
 
 impl Weld {
     /// The vertex at these finite coordinates.
     fn vertex(&mut self, corner: [f32; 3]) -> Result<u32, ErrorKind> {
-        let next = u32::try_from(self.numbers.len()).ok().filter(|&next| next < u32::MAX);
+        let next = u32::try_from(self.values.len() / 3).ok().filter(|&next| next < u32::MAX);
         let next = next.ok_or(ErrorKind::TooManyVertices)?;
         // −0 + 0 is +0; every other number stays what it is.
         let corner = corner.map(|value| value + 0.0);
+        if self.apart {
+            self.values.extend(corner);
+            return Ok(next);
+        }
         let number = *self.numbers.entry(corner.map(f32::to_bits)).or_insert(next);
         if number == next {
             self.values.extend(corner);
@@ -79,8 +85,8 @@ impl Stl {
     }
 
     fn finish(mut self) -> (Soup, ReadReport) {
-        self.intake.report.welded_corners = self.weld.welded;
-        let labels = Labels::Numbered(self.weld.numbers.len());
+        self.intake.report.welded = self.weld.welded;
+        let labels = Labels::Numbered(self.weld.values.len() / 3);
         self.intake.finish(labels, true, Some((3, Scalars::F32(self.weld.values))))
     }
 
@@ -167,7 +173,8 @@ fn keyword<'l>(line: &mut Line<'l>, expected: &'static str) -> Result<Word<'l>, 
 
 /// Reads an STL file.
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
-    let weld = Weld { numbers: HashMap::default(), values: Vec::new(), welded: 0 };
+    let apart = options.weld == Some(super::Weld::None);
+    let weld = Weld { numbers: HashMap::default(), values: Vec::new(), welded: 0, apart };
     let mut stl = Stl { weld, intake: Intake::new(Format::Stl, options) };
     let length = source.whole_length()?;
     let head = source.head()?;

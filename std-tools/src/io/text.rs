@@ -16,8 +16,8 @@ pub(super) struct Line<'a> {
 /// What places in a line are counted from.
 #[derive(Clone, Copy)]
 pub(super) enum Origin {
-    /// The number of the line, from 1.
-    Line(u64),
+    /// The number of the line, from 1, and how many bytes of it come before.
+    Text { line: u64, column: u64 },
     /// The number of its first byte, in files that are binary in part.
     Byte(u64),
 }
@@ -40,7 +40,7 @@ impl<'a> Line<'a> {
 
     /// The same line, which is the line with this number.
     pub(super) fn starting_at(self, number: u64) -> Self {
-        Self { origin: Origin::Line(number), ..self }
+        Self { origin: Origin::Text { line: number, column: 0 }, ..self }
     }
 
     /// The line up to a comment, which `mark` begins.
@@ -142,12 +142,12 @@ impl<'a> Line<'a> {
     pub(super) fn position(&self, at: usize) -> Position {
         match self.origin {
             Origin::Byte(first) => Position::Byte(first + at as u64),
-            Origin::Line(number) => {
+            Origin::Text { line, column } => {
                 // Joined lines hold line ends.
                 let before = &self.bytes[..at.min(self.bytes.len())];
-                let line = number + memchr::memchr_iter(b'\n', before).count() as u64;
-                let column = at - memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
-                Position::Text { line, column: column as u64 + 1 }
+                let line = line + memchr::memchr_iter(b'\n', before).count() as u64;
+                let column = memchr::memrchr(b'\n', before).map_or(column + at as u64, |end| (at - end - 1) as u64);
+                Position::Text { line, column: column + 1 }
             }
         }
     }

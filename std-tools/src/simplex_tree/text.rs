@@ -38,7 +38,7 @@ impl SimplexTree {
         for (word, value, position) in early {
             tree.insert(&word, value).map_err(|error| {
                 let file = if name == "-" { "<stdin>" } else { name }.to_owned();
-                ReadError { file, position, kind: ErrorKind::Rule(error.to_string().into()) }
+                ReadError { file, position, kind: ErrorKind::Rule(error.to_string().into()), line: None }
             })?;
         }
         Ok(tree)

@@ -46,7 +46,7 @@ fn complete_graphs_are_simplices() {
 fn degenerate_graphs() {
     let empty = expand(&Graph::default(), &FlagOptions::default()).unwrap();
     assert_eq!(empty, sig_tools::frozen::FrozenTree::default());
-    assert_eq!(counts(&Graph::default(), 3), []);
+    assert!(counts(&Graph::default(), 3).is_empty());
     let edgeless = Graph::from_edges(5, &[], None).unwrap();
     assert_eq!(counts(&edgeless, 31), [5]);
     assert_eq!(counts(&complete_graph(5), 0), [5]);

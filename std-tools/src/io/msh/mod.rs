@@ -11,12 +11,13 @@ mod v4;
 
 use super::error::{ErrorKind, Fault};
 use super::intake::Intake;
+use super::shape::Shape;
 use super::source::{Source, truncated};
 use super::text::{Line, Word};
 use super::{Format, ReadOptions, ReadReport};
 use crate::soup::{Labels, Scalars, Soup};
 use nodes::Nodes;
-use shapes::{Corners, Shape, shape};
+use shapes::shape;
 
 /// How numbers are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -41,27 +42,14 @@ struct Mesh {
     intake: Intake,
     /// The vertex numbers of the nodes of the element at hand.
     word: Vec<u32>,
-    /// Whether each node lies inside an element of higher order; empty if there is none.
-    inner: Vec<bool>,
 }
 
 impl Mesh {
     /// Adds the element of the given shape whose nodes are `self.word`.
     fn element(&mut self, shape: Shape) -> Result<(), ErrorKind> {
-        let (corners, inner) = self.word.split_at(shape.num_corners.min(self.word.len()));
-        if !inner.is_empty() {
-            self.inner.resize(self.nodes.len(), false);
-            for &node in inner {
-                self.inner[node as usize] = true;
-            }
-        }
         let tags = self.nodes.tags();
         let label = |vertex: u32| tags[vertex as usize];
-        let added = match shape.corners {
-            Corners::Simplex => self.intake.simplex(corners),
-            Corners::Quadrangle => self.intake.polygon(corners, label),
-            Corners::Polyhedron(polyhedron) => self.intake.polyhedron(polyhedron, corners, label),
-        };
+        let added = self.intake.element(shape, &self.word, label);
         added.map_err(|refusal| refusal.kind(|vertex| label(vertex).to_string()))
     }
 
@@ -84,21 +72,9 @@ impl Mesh {
     }
 
     /// The soup of the vertices that are left without inner nodes.
-    fn finish(mut self) -> (Soup, ReadReport) {
-        if !self.inner.is_empty() {
-            let mut stays = self.intake.used(self.nodes.len());
-            // A node that nothing uses at all was declared all the same.
-            for (stays, inner) in stays.iter_mut().zip(self.inner.iter().chain(std::iter::repeat(&false))) {
-                *stays |= !inner;
-            }
-            self.intake.report.inner_nodes_dropped = stays.iter().filter(|&&stays| !stays).count();
-            self.intake.renumber(&stays);
-            self.nodes.retain(&stays);
-        }
+    fn finish(self) -> (Soup, ReadReport) {
         let (tags, values) = self.nodes.into_parts();
-        let numbered = tags.iter().zip(0u64..).all(|(&tag, number)| tag == number);
-        let labels = if numbered { Labels::Numbered(tags.len()) } else { Labels::Integers(tags) };
-        self.intake.finish(labels, true, Some((3, Scalars::F64(values))))
+        self.intake.finish(Labels::from_integers(tags), true, Some((3, Scalars::F64(values))))
     }
 }
 
@@ -177,7 +153,7 @@ fn skip_section(source: &mut Source<'_>, name: &[u8]) -> Result<(), Fault> {
 /// Reads an MSH file.
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
     let intake = Intake::new(Format::Msh, options);
-    let mut mesh = Mesh { nodes: Nodes::new(), intake, word: Vec::new(), inner: Vec::new() };
+    let mut mesh = Mesh { nodes: Nodes::new(), intake, word: Vec::new() };
     let mut format = None;
     let (mut nodes_read, mut elements_read) = (false, false);
     loop {

@@ -86,14 +86,6 @@ impl Nodes {
         }
     }
 
-    /// Leaves out the nodes that do not stay; the way from tags to numbers is lost.
-    pub(super) fn retain(&mut self, stays: &[bool]) {
-        let mut each = stays.iter();
-        self.tags.retain(|_| each.next() == Some(&true));
-        let mut scalars = stays.iter().flat_map(|stays| [stays; 3]);
-        self.values.retain(|_| scalars.next() == Some(&true));
-    }
-
     /// The tags and the coordinates.
     pub(super) fn into_parts(self) -> (Vec<u64>, Vec<f64>) {
         (self.tags, self.values)

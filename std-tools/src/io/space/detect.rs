@@ -8,7 +8,7 @@ use super::super::gudhi;
 use super::super::source::Source;
 use super::super::text::{Line, Origin, parse_float};
 use super::row::{COMMENT, fields};
-use super::{SpaceFormat, binary, npy};
+use super::{SpaceFormat, binary, dot, graphml, npy};
 
 /// The format of an input called `name`, which may be known to be a graph.
 pub(super) fn format(source: &mut Source<'_>, name: &str, is_graph: bool) -> Result<SpaceFormat, Fault> {
@@ -17,7 +17,16 @@ pub(super) fn format(source: &mut Source<'_>, name: &str, is_graph: bool) -> Res
     mesh::refuse_complexes(head)?;
     let format = certain(head, length).or_else(|| by_name(name)).or_else(|| by_shape(head, length, is_graph));
     let format = format.ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownSpace))?;
-    if !is_graph || matches!(format, SpaceFormat::Edges | SpaceFormat::Sparse | SpaceFormat::Gudhi | SpaceFormat::Dipha)
+    if !is_graph
+        || matches!(
+            format,
+            SpaceFormat::Edges
+                | SpaceFormat::Sparse
+                | SpaceFormat::Dot
+                | SpaceFormat::GraphMl
+                | SpaceFormat::Gudhi
+                | SpaceFormat::Dipha
+        )
     {
         return Ok(format);
     }
@@ -36,6 +45,10 @@ fn certain(head: &[u8], length: Option<u64>) -> Option<SpaceFormat> {
         Some(SpaceFormat::Pts)
     } else if head.starts_with(&binary::DIPHA_MAGIC.to_le_bytes()) {
         Some(SpaceFormat::Dipha)
+    } else if graphml::is_graphml(head) {
+        Some(SpaceFormat::GraphMl)
+    } else if dot::is_graph(head) {
+        Some(SpaceFormat::Dot)
     } else {
         mesh::certain(head, length).map(|_| SpaceFormat::Mesh)
     }
@@ -43,7 +56,7 @@ fn certain(head: &[u8], length: Option<u64>) -> Option<SpaceFormat> {
 
 /// The format that a name stands for; `.csv` and `.txt` stand for any text.
 fn by_name(name: &str) -> Option<SpaceFormat> {
-    const NAMES: [(&str, SpaceFormat); 12] = [
+    const NAMES: [(&str, SpaceFormat); 15] = [
         ("lower_distance_matrix", SpaceFormat::Lower),
         ("upper_distance_matrix", SpaceFormat::Upper),
         ("sparse_distance_matrix", SpaceFormat::Sparse),
@@ -52,6 +65,9 @@ fn by_name(name: &str) -> Option<SpaceFormat> {
         ("coo", SpaceFormat::Sparse),
         ("edges", SpaceFormat::Edges),
         ("edgelist", SpaceFormat::Edges),
+        ("dot", SpaceFormat::Dot),
+        ("gv", SpaceFormat::Dot),
+        ("graphml", SpaceFormat::GraphMl),
         ("xyz", SpaceFormat::Points),
         ("npy", SpaceFormat::Npy),
         ("dipha", SpaceFormat::Dipha),
@@ -128,7 +144,7 @@ fn row(line: &[u8]) -> Option<Vec<Option<f64>>> {
         return None;
     }
     let mut row = Vec::new();
-    let line = Line::new(line, Origin::Line(1));
+    let line = Line::new(line, Origin::Text { line: 1, column: 0 });
     let line = COMMENT.map_or(line.clone(), |mark| line.without_comment(mark));
     let read = fields(line, |_, word| {
         row.push(parse_float(word.bytes));

@@ -78,13 +78,70 @@ pub(super) fn list(source: &mut Source<'_>, repeated: &mut usize) -> Result<Spac
         edges.push(a, b, weight, line.position(first.at));
         end(&mut line)?;
     }
+    labelled(table, edges, weighted == Some(true), repeated)
+}
+
+/// The graph, its vertices in the order of their labels.
+fn labelled(table: LabelTable, mut edges: Edges, weighted: bool, repeated: &mut usize) -> Result<Space, Fault> {
     let (numbers, labels) = sorted(table.into_labels());
     for (a, b) in &mut edges.pairs {
         let (x, y) = (numbers[*a as usize], numbers[*b as usize]);
         (*a, *b) = (x.min(y), x.max(y));
     }
-    let graph = edges.graph(labels.len(), weighted == Some(true), repeated)?;
+    let graph = edges.graph(labels.len(), weighted, repeated)?;
     Ok(Space::Graph { graph, labels })
+}
+
+/// The edges of a graph whose vertices have names, of which some may have weights.
+pub(super) struct LabelledEdges {
+    table: LabelTable,
+    edges: Edges,
+    /// The edges without weights, by number.
+    unweighted: Vec<usize>,
+}
+
+impl Default for LabelledEdges {
+    fn default() -> Self {
+        Self { table: LabelTable::new(), edges: Edges::default(), unweighted: Vec::new() }
+    }
+}
+
+impl LabelledEdges {
+    /// The number of the vertex with a name.
+    pub(super) fn vertex(&mut self, name: &[u8], position: Position) -> Result<u32, Fault> {
+        let number = match (canonical(name), std::str::from_utf8(name)) {
+            (Some(integer), _) => self.table.number_integer(integer),
+            (None, Ok(label)) if !label.is_empty() && !label.contains(char::is_control) => self.table.number(label),
+            _ => {
+                let expected = "the name of a vertex in UTF-8, without control characters".into();
+                let found = super::super::error::excerpt(name);
+                return Err(Fault::new(position, ErrorKind::Expected { expected, found }));
+            }
+        };
+        number.ok_or_else(|| Fault::new(position, ErrorKind::TooManyVertices))
+    }
+
+    /// Adds an edge.
+    pub(super) fn edge(&mut self, a: u32, b: u32, weight: Option<f64>, position: Position) -> Result<(), Fault> {
+        if a == b {
+            let message = "this edge joins a vertex to itself, which edges of a complex do not";
+            return Err(Fault::new(position, ErrorKind::Rule(message.into())));
+        }
+        if weight.is_none() {
+            self.unweighted.push(self.edges.pairs.len());
+        }
+        self.edges.push(a, b, weight.unwrap_or(0.0), position);
+        Ok(())
+    }
+
+    /// The graph; edges without a weight have the weight `other` if there are edges with one.
+    pub(super) fn finish(mut self, other: f64, repeated: &mut usize) -> Result<Space, Fault> {
+        let weighted = self.unweighted.len() < self.edges.pairs.len();
+        for &edge in self.unweighted.iter().filter(|_| weighted) {
+            self.edges.weights[edge] = other;
+        }
+        labelled(self.table, self.edges, weighted, repeated)
+    }
 }
 
 fn vertex(table: &mut LabelTable, line: &Line<'_>, word: Word<'_>) -> Result<u32, Fault> {

@@ -7,7 +7,9 @@
 
 mod binary;
 mod detect;
+mod dot;
 mod edges;
+mod graphml;
 mod gudhi;
 mod matrix;
 mod npy;
@@ -70,6 +72,10 @@ pub enum SpaceFormat {
     Dipha,
     /// The edges of a graph, by labels, in text.
     Edges,
+    /// Graphviz' DOT.
+    Dot,
+    /// GraphML.
+    GraphMl,
     /// The vertices and edges of a complex in the text of GUDHI's `Simplex_tree`, with their values as weights.
     Gudhi,
 }
@@ -88,6 +94,8 @@ impl SpaceFormat {
         Self::LowerBinary,
         Self::Dipha,
         Self::Edges,
+        Self::Dot,
+        Self::GraphMl,
         Self::Gudhi,
     ];
 
@@ -109,6 +117,8 @@ impl SpaceFormat {
             Self::LowerBinary => "lower-binary",
             Self::Dipha => "dipha",
             Self::Edges => "edges",
+            Self::Dot => "dot",
+            Self::GraphMl => "graphml",
             Self::Gudhi => "gudhi",
         }
     }
@@ -120,7 +130,7 @@ impl SpaceFormat {
             Self::Points => {
                 "points, one a line, numbers separated by commas, semicolons or blanks; perhaps a header line"
             }
-            Self::Mesh => "the vertices of a mesh: OFF (also nOFF of any dimension), OBJ, PLY, STL, Gmsh MSH",
+            Self::Mesh => "the vertices of a mesh: OFF (also nOFF of any dimension), OBJ, PLY, VTU, …",
             Self::Npy => "points as the rows of a NumPy array of numbers, .npy",
             Self::Pts => "points in binary: PTS1, 32-bit dimension, 64-bit count, doubles, little-endian",
             Self::Full => "a distance matrix in text, a row a line",
@@ -130,6 +140,8 @@ impl SpaceFormat {
             Self::LowerBinary => "the rows of a distance matrix below the diagonal as 32-bit floats, little-endian",
             Self::Dipha => "DIPHA's distance matrix, full or sparse",
             Self::Edges => "a graph: lines u v or u v weight with any labels; a label alone is a vertex",
+            Self::Dot => "a graph in Graphviz' DOT; weight=… gives the weights of edges",
+            Self::GraphMl => "a graph in GraphML; data called weight give the weights of edges",
             Self::Gudhi => "the graph of a complex: GUDHI's simplex-tree text, lines 0 v value, 1 v w value, …",
         }
     }
@@ -229,27 +241,30 @@ pub fn read_space(
     options: &SpaceOptions<'_>,
 ) -> Result<(Space, SpaceReport), ReadError> {
     let run = || {
-        let mut source = Source::new(reader, length, options.progress)?;
-        let format = match options.format {
-            Some(format) => format,
-            None => detect::format(&mut source, name, options.is_graph)?,
-        };
-        let mut repeated = 0;
-        let space = match format {
-            SpaceFormat::Points => Space::Points(table::read(&mut source)?),
-            SpaceFormat::Mesh => Space::Points(mesh(&mut source, name)?),
-            SpaceFormat::Npy => Space::Points(npy::read(&mut source)?),
-            SpaceFormat::Pts => Space::Points(binary::pts(&mut source)?),
-            SpaceFormat::Full => Space::Distances(matrix::full(&mut source)?),
-            SpaceFormat::Lower => Space::Distances(matrix::lower(&mut source)?),
-            SpaceFormat::Upper => Space::Distances(matrix::upper(&mut source)?),
-            SpaceFormat::LowerBinary => Space::Distances(binary::lower(&mut source)?),
-            SpaceFormat::Dipha => binary::dipha(&mut source, &mut repeated)?,
-            SpaceFormat::Sparse => edges::sparse(&mut source, &mut repeated)?,
-            SpaceFormat::Edges => edges::list(&mut source, &mut repeated)?,
-            SpaceFormat::Gudhi => gudhi::read(&mut source)?,
-        };
-        Ok((space, SpaceReport { format, compression: source.compression, repeated }))
+        Source::new(reader, length, options.progress)?.reading(|source| {
+            let format = match options.format {
+                Some(format) => format,
+                None => detect::format(source, name, options.is_graph)?,
+            };
+            let mut repeated = 0;
+            let space = match format {
+                SpaceFormat::Points => Space::Points(table::read(source)?),
+                SpaceFormat::Mesh => Space::Points(mesh(source, name)?),
+                SpaceFormat::Npy => Space::Points(npy::read(source)?),
+                SpaceFormat::Pts => Space::Points(binary::pts(source)?),
+                SpaceFormat::Full => Space::Distances(matrix::full(source)?),
+                SpaceFormat::Lower => Space::Distances(matrix::lower(source)?),
+                SpaceFormat::Upper => Space::Distances(matrix::upper(source)?),
+                SpaceFormat::LowerBinary => Space::Distances(binary::lower(source)?),
+                SpaceFormat::Dipha => binary::dipha(source, &mut repeated)?,
+                SpaceFormat::Sparse => edges::sparse(source, &mut repeated)?,
+                SpaceFormat::Edges => edges::list(source, &mut repeated)?,
+                SpaceFormat::Dot => dot::read(source, &mut repeated)?,
+                SpaceFormat::GraphMl => graphml::read(source, &mut repeated)?,
+                SpaceFormat::Gudhi => gudhi::read(source)?,
+            };
+            Ok((space, SpaceReport { format, compression: source.compression, repeated }))
+        })
     };
     run().map_err(|fault: Fault| fault.in_file(super::displayed(name)))
 }

@@ -416,3 +416,60 @@ fn rows_that_could_be_points_are_a_graph_if_one_is_expected() {
     }
     assert_eq!(of_graph("1 2 0.5\n2 3 0.25\n"), SpaceFormat::Edges);
 }
+
+const DOT: &str = "/* c */ strict graph g {
+  node [shape=box]; rankdir = LR
+  a -- b -- \"c d\" [weight=2.5, color=red]  # c
+  subgraph s { b:p:n -- 7 [weight=0.5]; e } // c
+  a -- 7
+}
+";
+
+#[test]
+fn graphs_in_dot() {
+    for name in ["-", "x.txt", "x.gv"] {
+        let (space, report) = read_space_bytes(DOT.as_bytes(), name, &SpaceOptions::default()).unwrap();
+        assert_eq!(report.format, SpaceFormat::Dot, "{name}");
+        let Space::Graph { graph, labels } = space else { panic!("a graph") };
+        assert_eq!(labels, Labels::Tokens(["7", "a", "b", "c d", "e"].map(Into::into).into()));
+        let edges: Vec<_> = (0..5)
+            .flat_map(|v| graph.upper_neighbours(v).iter().zip(graph.edges_of(v)).map(move |(&w, e)| (v, w, e)))
+            .map(|(v, w, e)| (v, w, graph.weight(e)))
+            .collect();
+        assert_eq!(edges, [(0, 1, 1.0), (0, 2, 0.5), (1, 2, 2.5), (2, 3, 2.5)]);
+    }
+    let refusal = |text: &str| {
+        let options = SpaceOptions { format: Some(SpaceFormat::Dot), ..SpaceOptions::default() };
+        read_space_bytes(text.as_bytes(), "test", &options).unwrap_err().to_string()
+    };
+    assert!(refusal("graph {\n a -- a\n}").starts_with("test:2:7: this edge joins a vertex to itself"));
+    assert!(refusal("graph {\n a -- {b c}\n}").starts_with("test:2:7: expected a node; edges to and from"));
+    assert!(refusal("graph {\n a -- b [weight=-1]\n}").starts_with("test:2:17: expected a distance"));
+    assert!(refusal("graph {\n a -- b").starts_with("test:2:8: expected a node, an edge, or `}`"));
+    assert!(refusal("tree {}").starts_with("test:1:1: expected graph or digraph, found `tree`"));
+}
+
+const GRAPHML: &str = "<?xml version='1.0'?>
+<graphml xmlns='x'><key id='d0' for='edge' attr.name='weight' attr.type='double'/>
+<graph edgedefault='undirected'>
+<node id='n&amp;1'/><node id='n2'><data key='d9'>7</data></node><node id='n3'/>
+<edge source='n&amp;1' target='n2'><data key='d0'>1.5</data></edge>
+<edge source='n3' target='n2'/>
+</graph></graphml>
+";
+
+#[test]
+fn graphs_in_graphml() {
+    let (space, report) = read_space_bytes(GRAPHML.as_bytes(), "-", &SpaceOptions::default()).unwrap();
+    assert_eq!(report.format, SpaceFormat::GraphMl);
+    let Space::Graph { graph, labels } = space else { panic!("a graph") };
+    assert_eq!(labels, Labels::Tokens(["n&1", "n2", "n3"].map(Into::into).into()));
+    assert_eq!((graph.upper_neighbours(0), graph.upper_neighbours(1)), (&[1][..], &[2][..]));
+    assert_eq!((graph.weight(0), graph.weight(1)), (1.5, 1.0));
+    let unweighted = GRAPHML.replace("'weight'", "'length'");
+    let (space, _) = read_space_bytes(unweighted.as_bytes(), "-", &SpaceOptions::default()).unwrap();
+    assert!(matches!(space, Space::Graph { graph, .. } if !graph.is_weighted()));
+    let wrong = GRAPHML.replace("1.5", "-1.5");
+    let error = read_space_bytes(wrong.as_bytes(), "test", &SpaceOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("test:5:51: expected a distance"), "{error}");
+}

@@ -58,7 +58,7 @@ fn an_unknown_format_is_refused_with_the_list_of_formats() {
     assert_eq!(detected(".obj", "a b c\n"), None);
     let error = read_bytes(b"a b c\n", "-", &ReadOptions::default()).unwrap_err().to_string();
     let expected = "<stdin>: neither the content nor the name tells the format; name it (--format), one of: \
-                    off, obj, ply, stl, msh, tetbin, tops, simplices";
+                    off, obj, ply, stl, msh, vtk, vtu, medit, mfem, tetgen, abaqus, nastran, tetbin, tops, simplices";
     assert_eq!(error, expected);
 }
 

@@ -71,7 +71,7 @@ fn msh_of_prisms_and_tetrahedra() {
 #[test]
 fn stl_binary_that_begins_with_solid() {
     let (_, report) = check("trimesh_angle_block.STL", Format::Stl, &[398, 1139, 704]);
-    assert_eq!(report.welded_corners, 3 * 704 - 398);
+    assert_eq!(report.welded, 3 * 704 - 398);
 }
 
 #[test]

@@ -20,6 +20,7 @@ fn samples() -> Vec<(Format, Vec<u8>)> {
         (Format::Tops, super::tops::TEXT.into()),
         (Format::Tetbin, super::tops::tetbin(&[[0.0; 3], [1.0; 3], [2.0; 3], [-1.5; 3]], &[[0, 1, 2, 3]])),
     ];
+    samples.extend(super::foreign::samples());
     for big_endian in [false, true] {
         samples.push((Format::Ply, ply::binary(big_endian)));
         samples.push((Format::Msh, msh::binary_2(big_endian)));
@@ -94,6 +95,11 @@ fn counts_are_not_trusted() {
     for (format, text) in [
         (Format::Off, format!("OFF {huge} {huge} 0\n0 0 0\n")),
         (Format::Off, "OFF 1 9000000000000 0\n0 0 0\n1 0\n".into()),
+        (Format::Medit, format!("MeshVersionFormatted 2 Dimension 3 Vertices {huge}\n0 0 0\n")),
+        (Format::Mfem, "MFEM mesh v1.0\nelements\n9000000000000000000\n1 0 0\n".into()),
+        (Format::Tetgen, format!("{huge} 3 0 0\n1 0 0 0\n")),
+        (Format::Vtk, format!("# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS {huge} float\n0 0 0\n")),
+        (Format::Vtk, format!("# vtk DataFile Version 3.0\n\nBINARY\nDATASET POLYDATA\nPOINTS {huge} float\n0 0 0\n")),
         (Format::Tops, format!("{huge} {huge}\n0 0 0\n")),
         (Format::Tops, "1 1\n0 0 0\n9000000000000000000 0\n".into()),
         (Format::Off, "OFF 1 1 0\n0 0 0\n9000000000000000000 0\n".into()),

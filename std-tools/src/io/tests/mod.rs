@@ -3,16 +3,19 @@
 mod agreement;
 mod detection;
 mod fixtures;
+mod foreign;
 mod hostile;
 mod merging;
 mod msh;
 mod obj;
 mod off;
 mod ply;
+mod shared_data;
 mod simplex_list;
 mod stl;
 mod text;
 mod tops;
+mod weld;
 
 use std::collections::HashSet;
 
@@ -26,7 +29,7 @@ fn read_as(format: Format, bytes: impl AsRef<[u8]>) -> Result<(Soup, ReadReport)
 
 /// Reads bytes as a format, dropping simplices that repeat a vertex.
 fn read_dropping(format: Format, bytes: impl AsRef<[u8]>) -> (Soup, ReadReport) {
-    let options = ReadOptions { format: Some(format), drop_degenerate: true, ..ReadOptions::default() };
+    let options = ReadOptions { format: Some(format), drop_degenerate: true, ..Default::default() };
     read_bytes(bytes.as_ref(), "test", &options).unwrap()
 }
 

@@ -33,7 +33,7 @@ fn text_and_binary_give_the_same_soup() {
     assert_eq!(listed(&soup, 2), [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(singles(&soup), [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.]);
     assert!(singles(&soup).iter().all(|value| value.is_sign_positive()));
-    assert_eq!(report.welded_corners, 2);
+    assert_eq!(report.welded, 2);
 }
 
 #[test]

@@ -1,0 +1,215 @@
+//! VTK's formats: `legacy` reads those that begin with `# vtk DataFile`, `xml` those in XML.
+//!
+//! This file holds what they have in common: scalar types, the arrays that describe a grid, and how they become cells. Cells
+//! of every kind that VTK has for triangles, quadrangles, polygons, lines, points, tetrahedra, hexahedra, prisms and
+//! pyramids are read, of higher order by their corners.
+
+mod bytes;
+mod legacy;
+mod shapes;
+mod xml;
+
+pub(super) use legacy::read as read_legacy;
+pub(super) use xml::read as read_xml;
+
+use super::error::{ErrorKind, Fault, Position};
+use super::intake::Intake;
+use super::text::Line;
+use crate::soup::Scalars;
+
+/// Whether a file that begins so says that it is in the legacy format.
+pub(super) fn is_legacy(head: &[u8]) -> bool {
+    head.trim_ascii_start().get(..14).is_some_and(|start| start.eq_ignore_ascii_case(b"# vtk DataFile"))
+}
+
+/// Whether a file that begins so says that it is in an XML format.
+pub(super) fn is_xml(head: &[u8]) -> bool {
+    let head = head.trim_ascii_start();
+    (head.starts_with(b"<?xml") || head.starts_with(b"<!--") || head.starts_with(b"<VTKFile"))
+        && memchr::memmem::find(head, b"<VTKFile").is_some()
+}
+
+/// The type of a scalar.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Type {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+/// A scalar of any type.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Number {
+    Integer(i64),
+    Float(f64),
+}
+
+impl Type {
+    const fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+
+    const fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// The number in as many bytes as the type has.
+    fn decode(self, bytes: &[u8], big_endian: bool) -> Number {
+        fn number<const N: usize, T>(bytes: &[u8], big_endian: bool, from: fn([u8; N]) -> T) -> T {
+            let mut number = bytes.first_chunk::<N>().copied().unwrap_or([0; N]);
+            if big_endian {
+                number.reverse();
+            }
+            from(number)
+        }
+        Number::Integer(match self {
+            Self::I8 => number(bytes, big_endian, i8::from_le_bytes).into(),
+            Self::U8 => number(bytes, big_endian, u8::from_le_bytes).into(),
+            Self::I16 => number(bytes, big_endian, i16::from_le_bytes).into(),
+            Self::U16 => number(bytes, big_endian, u16::from_le_bytes).into(),
+            Self::I32 => number(bytes, big_endian, i32::from_le_bytes).into(),
+            Self::U32 => number(bytes, big_endian, u32::from_le_bytes).into(),
+            Self::I64 => number(bytes, big_endian, i64::from_le_bytes),
+            // Nothing that is counted or numbered is as large; −1 is as good an error.
+            Self::U64 => i64::try_from(number(bytes, big_endian, u64::from_le_bytes)).unwrap_or(-1),
+            Self::F32 => return Number::Float(number(bytes, big_endian, f32::from_le_bytes).into()),
+            Self::F64 => return Number::Float(number(bytes, big_endian, f64::from_le_bytes)),
+        })
+    }
+}
+
+/// The values of an array that the reader needs.
+enum Values {
+    /// Coordinates.
+    Points(Scalars),
+    /// Numbers of points, of which there are so many.
+    Vertices(Vec<u32>, u32),
+    /// Where the vertices of each cell end.
+    Ends(Vec<u64>),
+    /// Types of cells.
+    Types(Vec<u8>),
+    /// Labels of points.
+    Labels(Vec<u64>),
+}
+
+impl Values {
+    fn len(&self) -> usize {
+        match self {
+            Self::Points(Scalars::F32(values)) => values.len(),
+            Self::Points(Scalars::F64(values)) => values.len(),
+            Self::Vertices(values, _) => values.len(),
+            Self::Ends(values) | Self::Labels(values) => values.len(),
+            Self::Types(values) => values.len(),
+        }
+    }
+
+    /// What is wrong with a number, if that is not possible here.
+    fn refusal(&self, number: Number) -> ErrorKind {
+        let found = match number {
+            Number::Integer(number) => number.to_string(),
+            Number::Float(number) => number.to_string(),
+        };
+        match (self, number) {
+            (Self::Points(_), _) => ErrorKind::NotFinite { found: found.into() },
+            (Self::Vertices(_, vertices), Number::Integer(index)) => {
+                ErrorKind::OutOfRange { index, vertices: (*vertices).into(), first: 0 }
+            }
+            _ => ErrorKind::Expected { expected: "an integer, from 0".into(), found: found.into() },
+        }
+    }
+
+    /// Adds a number; what is wrong with it, if it is not possible here.
+    #[expect(clippy::cast_possible_truncation, reason = "single precision goes to single precision")]
+    fn push(&mut self, number: Number) -> Result<(), ErrorKind> {
+        #[expect(clippy::cast_precision_loss, reason = "coordinates that are integers")]
+        let float = match number {
+            Number::Integer(number) => number as f64,
+            Number::Float(number) => number,
+        };
+        let integer = match number {
+            Number::Integer(number) => u64::try_from(number).ok(),
+            Number::Float(_) => None,
+        };
+        match (&mut *self, integer) {
+            (Self::Points(Scalars::F32(values)), _) if float.is_finite() => values.push(float as f32),
+            (Self::Points(Scalars::F64(values)), _) if float.is_finite() => values.push(float),
+            (Self::Vertices(values, vertices), Some(number)) if number < u64::from(*vertices) => {
+                values.push(number as u32);
+            }
+            (Self::Ends(values) | Self::Labels(values), Some(number)) => values.push(number),
+            (Self::Types(values), Some(number)) if number < 256 => values.push(number as u8),
+            _ => return Err(self.refusal(number)),
+        }
+        Ok(())
+    }
+
+    /// Adds a number in text.
+    fn push_text(&mut self, line: &mut Line<'_>) -> Result<(), Fault> {
+        match self {
+            Self::Points(Scalars::F32(values)) => values.push(line.float("a coordinate of a point")?),
+            Self::Points(Scalars::F64(values)) => values.push(line.float("a coordinate of a point")?),
+            _ => {
+                let number = line.integer("an integer")?;
+                self.push(Number::Integer(number)).map_err(|kind| line.fault(0, kind))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Cells as their vertices one after the other, where those of each end, and what kind each is.
+struct Cells<'a> {
+    vertices: &'a [u32],
+    ends: &'a [u64],
+    /// The types of the cells, or the one of all.
+    types: Types<'a>,
+    /// Where the vertices begin, for errors.
+    position: Position,
+}
+
+#[derive(Clone, Copy)]
+enum Types<'a> {
+    Each(&'a [u8]),
+    All(u8),
+}
+
+impl Cells<'_> {
+    /// Adds the cells, whose vertices are numbered from `shift` on.
+    fn add(&self, shift: u32, intake: &mut Intake) -> Result<(), Fault> {
+        let fault = |message: String| Fault::new(self.position, ErrorKind::Rule(message.into()));
+        let (mut start, mut word) = (0, Vec::new());
+        for (cell, &end) in self.ends.iter().enumerate() {
+            let end = usize::try_from(end).unwrap_or(usize::MAX);
+            let Some(vertices) = self.vertices.get(start..end) else {
+                let count = self.vertices.len();
+                return Err(fault(format!("cell {cell} goes from vertex {start} to {end} of {count} in the list")));
+            };
+            let kind = match self.types {
+                Types::Each(types) => types.get(cell).copied().unwrap_or(0),
+                Types::All(kind) => kind,
+            };
+            word.clear();
+            // A sum that does not fit was refused with the number of points.
+            word.extend(vertices.iter().map(|vertex| vertex.saturating_add(shift)));
+            shapes::add(kind, &word, intake).map_err(|kind| fault(format!("cell {cell}: {kind}")))?;
+            start = end;
+        }
+        if start < self.vertices.len() {
+            let left = self.vertices.len() - start;
+            return Err(fault(format!("{left} vertices are left over after the last of {} cells", self.ends.len())));
+        }
+        Ok(())
+    }
+}
