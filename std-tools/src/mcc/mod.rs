@@ -19,9 +19,11 @@
 //! # }
 //! ```
 
+mod batch;
 mod criterion;
 mod front;
 mod picture;
+mod queue;
 mod record;
 mod simplify;
 mod store;
@@ -30,5 +32,5 @@ pub use criterion::{Criterion, Extent, Field, Free, Length, Pair};
 pub use front::{BadRefinement, Front, Moved, apply_in_order, members};
 pub use picture::{DrawError, Drawing, ViewAxis};
 pub use record::MultiResolution;
-pub use simplify::{SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
+pub use simplify::{Precision, SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
 pub use store::{MccFile, write_mcc};
