@@ -1,24 +1,35 @@
 //! The two lists of a cell: its boundary and its co-boundary, each by increasing cell, in one block.
 //!
 //! The boundary stands at the start of the block, the co-boundary at its end, and what is free between them: either may
-//! grow without moving the other.
+//! grow without moving the other. A list of more than [`LONG`] slots may have gaps among them (`gaps`), and the number of its
+//! arcs stands in a word of its own at that end of the block.
 
 use sig_core::{CellId, Dim, PackedArc};
 
 use super::arena::{Arena, capacity, class_for};
+use super::gaps;
 
 /// Where the lists of a cell lie: twelve bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Header {
     start: u32,
-    /// The length of the boundary, and the class of the block above it.
+    /// The slots of the boundary, and the class of the block above them.
     down: u32,
-    /// The length of the co-boundary, and the dimension of the cell above it.
+    /// The slots of the co-boundary, and the dimension of the cell above them.
     up: u32,
 }
 
 const DOWN_BITS: u32 = 25;
 const UP_BITS: u32 = 27;
+
+/// The longest list that has no gaps.
+const LONG: usize = 256;
+
+/// The words for so many arcs, with those that count them.
+#[inline]
+const fn words_for(arcs: usize) -> usize {
+    if arcs <= LONG { arcs } else { arcs + 2 }
+}
 
 /// Which list.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -41,9 +52,14 @@ impl Header {
     /// No cell.
     pub(super) const VACANT: Self = Self { start: u32::MAX, down: 0, up: 0 };
 
+    /// The words of the block of a cell with so many arcs.
+    pub(super) const fn words_of(arcs: usize) -> usize {
+        capacity(class_for(words_for(arcs)))
+    }
+
     /// A cell with a block for so many arcs, and none in it.
     pub(super) fn new(dim: Dim, arcs: usize, arena: &mut Arena) -> Self {
-        let class = class_for(arcs);
+        let class = class_for(words_for(arcs));
         let start = arena.allocate(class);
         Self { start, down: bits(class) << DOWN_BITS, up: bits(dim) << UP_BITS }
     }
@@ -59,11 +75,39 @@ impl Header {
     }
 
     #[inline]
-    pub(super) const fn len(self, side: Side) -> usize {
+    pub(super) const fn slots(self, side: Side) -> usize {
         match side {
             Side::Boundary => (self.down & ((1 << DOWN_BITS) - 1)) as usize,
             Side::Coboundary => (self.up & ((1 << UP_BITS) - 1)) as usize,
         }
+    }
+
+    /// The number of arcs in a list.
+    #[inline]
+    pub(super) fn len(self, side: Side, arena: &Arena) -> usize {
+        let slots = self.slots(side);
+        if slots <= LONG { slots } else { arena.words()[self.place_of_len(side)].word() as usize }
+    }
+
+    /// The word that counts the arcs of a long list.
+    const fn place_of_len(self, side: Side) -> usize {
+        let start = self.start as usize;
+        match side {
+            Side::Boundary => start,
+            Side::Coboundary => start + capacity(self.class()) - 1,
+        }
+    }
+
+    fn set_len(self, side: Side, len: usize, arena: &mut Arena) {
+        arena.words_mut()[self.place_of_len(side)] = PackedArc::from_word(bits(len));
+    }
+
+    const fn set_slots(&mut self, side: Side, slots: u32) {
+        let (field, width) = match side {
+            Side::Boundary => (&mut self.down, DOWN_BITS),
+            Side::Coboundary => (&mut self.up, UP_BITS),
+        };
+        *field = *field >> width << width | slots;
     }
 
     #[inline]
@@ -73,21 +117,24 @@ impl Header {
 
     #[inline]
     const fn range(self, side: Side) -> core::ops::Range<usize> {
-        let start = self.start as usize;
+        let (start, slots) = (self.start as usize, self.slots(side));
+        let count = (slots > LONG) as usize;
         match side {
-            Side::Boundary => start..start + self.len(side),
+            Side::Boundary => start + count..start + count + slots,
             Side::Coboundary => {
-                let end = start + capacity(self.class());
-                end - self.len(side)..end
+                let end = start + capacity(self.class()) - count;
+                end - slots..end
             }
         }
     }
 
+    /// The slots of a list: the arcs, and gaps if it is long.
     #[inline]
     pub(super) fn list(self, side: Side, arena: &Arena) -> &[PackedArc] {
         &arena.words()[self.range(side)]
     }
 
+    /// The same, to change an incidence.
     #[inline]
     pub(super) fn list_mut(self, side: Side, arena: &mut Arena) -> &mut [PackedArc] {
         &mut arena.words_mut()[self.range(side)]
@@ -99,35 +146,42 @@ impl Header {
     }
 
     /// The words that [`reserve`](Self::reserve) allocates for so many more arcs.
-    pub(super) fn words_to_reserve(self, more: usize) -> usize {
-        let arcs = self.len(Side::Boundary) + self.len(Side::Coboundary) + more;
-        if arcs <= capacity(self.class()) { 0 } else { capacity(class_for(arcs + arcs / 8)) }
+    #[inline]
+    pub(super) const fn words_to_reserve(self, more: usize) -> usize {
+        let arcs = self.slots(Side::Boundary) + self.slots(Side::Coboundary) + more;
+        if words_for(arcs) <= capacity(self.class()) { 0 } else { Self::words_of(arcs + arcs / 8) }
     }
 
     /// Makes room for so many more arcs.
+    #[inline]
     pub(super) fn reserve(&mut self, more: usize, arena: &mut Arena) {
         let words = self.words_to_reserve(more);
-        if words == 0 {
-            return;
+        if words > 0 {
+            self.move_to(class_for(words), arena);
         }
-        let class = class_for(words);
+    }
+
+    /// Moves the lists to a larger block.
+    fn move_to(&mut self, class: usize, arena: &mut Arena) {
         let start = arena.allocate(class);
-        let down = self.range(Side::Boundary);
-        let up = self.range(Side::Coboundary);
-        let end = start as usize + capacity(class);
-        arena.words_mut().copy_within(down, start as usize);
-        let up_len = up.len();
-        arena.words_mut().copy_within(up, end - up_len);
-        self.release(arena);
+        let old = *self;
         self.start = start;
         self.down = self.down & ((1 << DOWN_BITS) - 1) | bits(class) << DOWN_BITS;
+        for side in [Side::Boundary, Side::Coboundary] {
+            arena.words_mut().copy_within(old.range(side), self.range(side).start);
+            if old.slots(side) > LONG {
+                let len = old.len(side, arena);
+                self.set_len(side, len, arena);
+            }
+        }
+        old.release(arena);
     }
 
     /// While a complex is laid out: adds the last arc of a list, right after what is in the block. Boundaries come first;
     /// at the end, [`settle`](Self::settle) moves the co-boundary to its place.
     #[inline]
     pub(super) fn lay(&mut self, side: Side, arc: PackedArc, arena: &mut Arena) {
-        let at = self.start as usize + self.len(Side::Boundary) + self.len(Side::Coboundary);
+        let at = self.start as usize + self.slots(Side::Boundary) + self.slots(Side::Coboundary);
         arena.words_mut()[at] = arc;
         match side {
             Side::Boundary => self.down += 1,
@@ -138,15 +192,77 @@ impl Header {
     /// Ends the laying out.
     #[inline]
     pub(super) fn settle(self, arena: &mut Arena) {
-        let (laid, at) = (self.range(Side::Boundary).end, self.range(Side::Coboundary));
-        if at.start > laid {
-            arena.words_mut().copy_within(laid..laid + at.len(), at.start);
+        let laid = self.start as usize;
+        let middle = laid + self.slots(Side::Boundary);
+        for (side, from) in [(Side::Coboundary, middle), (Side::Boundary, laid)] {
+            let (slots, to) = (self.slots(side), self.range(side).start);
+            if from != to {
+                arena.words_mut().copy_within(from..from + slots, to);
+            }
+            if slots > LONG {
+                self.set_len(side, slots, arena);
+            }
+        }
+    }
+
+    /// Lays a list out anew, over as many slots as there is room for.
+    fn rebuild(&mut self, side: Side, arcs: &[PackedArc], arena: &mut Arena) {
+        let other = if side == Side::Boundary { Side::Coboundary } else { Side::Boundary };
+        let other = self.slots(other) + usize::from(self.slots(other) > LONG);
+        let slots = match arcs.len() {
+            few @ ..=LONG => few,
+            many => gaps::slots_for(many).min(capacity(self.class()) - other - 1).min(side.longest()),
+        };
+        self.set_slots(side, bits(slots));
+        gaps::spread(arcs, self.list_mut(side, arena));
+        if slots > LONG {
+            self.set_len(side, arcs.len(), arena);
+        }
+    }
+
+    /// Adds arcs to a list that is long or becomes so.
+    #[cold]
+    fn insert_long(&mut self, side: Side, new: &[PackedArc], arena: &mut Arena) {
+        let mut placed = 0;
+        if self.slots(side) > LONG {
+            let slots = self.list_mut(side, arena);
+            placed = new.iter().take_while(|&&arc| gaps::insert(slots, arc)).count();
+            let len = self.len(side, arena) + placed;
+            self.set_len(side, len, arena);
+        }
+        if placed < new.len() {
+            let mut arcs: Vec<PackedArc> = gaps::arcs(self.list(side, arena)).collect();
+            arcs.extend(&new[placed..]);
+            // Two runs: a merge.
+            arcs.sort();
+            // Room for gaps, if there is any.
+            let other = self.slots(Side::Boundary) + self.slots(Side::Coboundary) - self.slots(side);
+            let words = Self::words_of(gaps::slots_for(gaps::slots_for(arcs.len())) + other);
+            if gaps::slots_for(arcs.len()) + other + 2 > capacity(self.class()) && arena.has_room(words) {
+                self.move_to(class_for(words), arena);
+            }
+            self.rebuild(side, &arcs, arena);
+        }
+    }
+
+    /// Removes an arc from a long list.
+    #[cold]
+    fn remove_long(&mut self, side: Side, cell: CellId, arena: &mut Arena) {
+        gaps::remove(self.list_mut(side, arena), cell);
+        let len = self.len(side, arena) - 1;
+        self.set_len(side, len, arena);
+        if 2 * len < self.slots(side) {
+            let arcs: Vec<PackedArc> = gaps::arcs(self.list(side, arena)).collect();
+            self.rebuild(side, &arcs, arena);
         }
     }
 
     /// Adds arcs, by increasing cell, to cells that are not in the list; there is room for them.
     #[inline]
     pub(super) fn insert(&mut self, side: Side, new: &[PackedArc], arena: &mut Arena) {
+        if self.slots(side) + new.len() > LONG {
+            return self.insert_long(side, new, arena);
+        }
         let range = self.range(side);
         let words = arena.words_mut();
         match side {
@@ -178,6 +294,9 @@ impl Header {
     /// Removes the arc to a cell that is in the list.
     #[inline]
     pub(super) fn remove(&mut self, side: Side, cell: CellId, arena: &mut Arena) {
+        if self.slots(side) > LONG {
+            return self.remove_long(side, cell, arena);
+        }
         let range = self.range(side);
         let words = arena.words_mut();
         let at = range.start + lower_bound(&words[range.clone()], cell);
@@ -194,9 +313,36 @@ impl Header {
         }
     }
 
+    /// Removes the arc to a cell that is in the list, and adds others, as [`insert`](Self::insert).
+    #[inline]
+    pub(super) fn exchange(&mut self, side: Side, cell: CellId, new: &[PackedArc], arena: &mut Arena) {
+        let &[arc] = new else {
+            self.remove(side, cell, arena);
+            return self.insert(side, new, arena);
+        };
+        if self.slots(side) > LONG {
+            self.remove_long(side, cell, arena);
+            return self.insert(side, new, arena);
+        }
+        // One for another: what is between the two moves by one.
+        let list = self.list_mut(side, arena);
+        let (gone, place) = (lower_bound(list, cell), lower_bound(list, arc.cell()));
+        debug_assert!(list[gone].cell() == cell);
+        if place > gone {
+            list[gone..place].rotate_left(1);
+            list[place - 1] = arc;
+        } else {
+            list[place..=gone].rotate_right(1);
+            list[place] = arc;
+        }
+    }
+
     /// Removes the arcs to cells, increasing, that are in the list.
     #[inline]
     pub(super) fn remove_all(&mut self, side: Side, cells: &[CellId], arena: &mut Arena) {
+        if self.slots(side) > LONG {
+            return cells.iter().for_each(|&cell| self.remove(side, cell, arena));
+        }
         let range = self.range(side);
         let words = arena.words_mut();
         match side {
@@ -232,7 +378,7 @@ fn bits(value: usize) -> u32 {
 
 /// The first place in a list with that cell or a later one.
 #[inline]
-fn lower_bound(list: &[PackedArc], cell: CellId) -> usize {
+pub(super) fn lower_bound(list: &[PackedArc], cell: CellId) -> usize {
     if list.len() <= 16 {
         return list.iter().position(|arc| arc.cell() >= cell).unwrap_or(list.len());
     }

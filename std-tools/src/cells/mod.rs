@@ -5,10 +5,12 @@
 //! Euler operators (`operators`): [`CellComplex::kill`], KiC(i+1)C, takes a pair of cells away without changing the homology, and
 //! [`CellComplex::make`], MiC(i+1)C, puts it back. [`check`](CellComplex::check) tests the invariants.
 //!
-//! One file each: `arena` has the memory, `lists` the two lists of a cell.
+//! One file each: `arena` has the memory, `lists` the two lists of a cell, `gaps` those that are long.
 
 mod arena;
 mod check;
+mod cycles;
+mod gaps;
 mod lists;
 mod operators;
 mod simplices;
@@ -22,6 +24,7 @@ use arena::Arena;
 use lists::{Header, Side};
 
 pub use check::BrokenInvariant;
+pub use cycles::CellWithCycle;
 pub use operators::{Infeasible, Instance, OperatorKind, OperatorType, Refinement};
 pub use simplices::TooManyCells;
 pub use text::{read_cells, write_cells};
@@ -113,14 +116,14 @@ impl CellComplex {
     #[must_use]
     #[inline]
     pub fn num_boundary(&self, cell: CellId) -> usize {
-        self.header(cell).map_or(0, |header| header.len(Side::Boundary))
+        self.header(cell).map_or(0, |header| header.len(Side::Boundary, &self.arena))
     }
 
     /// The number of different cells that have a cell on their boundary.
     #[must_use]
     #[inline]
     pub fn num_coboundary(&self, cell: CellId) -> usize {
-        self.header(cell).map_or(0, |header| header.len(Side::Coboundary))
+        self.header(cell).map_or(0, |header| header.len(Side::Coboundary, &self.arena))
     }
 
     /// How an i-cell appears on the boundary of an (i+1)-cell; [`Incidence::NONE`] if it does not. Cost: a search in the
@@ -161,15 +164,26 @@ impl CellComplex {
         arc.incidence().unwrap_or_else(elsewhere)
     }
 
-    fn arcs(
-        &self,
-        cell: CellId,
-        side: Side,
-    ) -> impl ExactSizeIterator<Item = Arc> + DoubleEndedIterator + Clone + use<'_> {
-        self.list(cell, side).iter().map(move |&arc| {
-            let (low, high) = if side == Side::Boundary { (arc.cell(), cell) } else { (cell, arc.cell()) };
-            Arc { cell: arc.cell(), incidence: self.incidence_of(low, high, arc) }
-        })
+    #[inline]
+    fn arcs(&self, cell: CellId, side: Side) -> Arcs<'_> {
+        let header = self.header(cell).unwrap_or(Header::VACANT);
+        let num_arcs = header.len(side, &self.arena);
+        let slots = if num_arcs == 0 { &[] } else { header.list(side, &self.arena) };
+        Arcs { complex: self, cell, side, slots, num_arcs, before: None }
+    }
+
+    /// The neighbours of a cell on one side if they are one or two, and how they are incident.
+    #[inline]
+    pub(crate) fn one_or_two(&self, cell: CellId, instance: Instance) -> Option<(Arc, Option<Arc>)> {
+        let side = if instance == Instance::First { Side::Boundary } else { Side::Coboundary };
+        let header = self.cells.get(cell.index()).filter(|header| matches!(header.slots(side), 1 | 2))?;
+        let list = header.list(side, &self.arena);
+        let arc = |packed: PackedArc| {
+            let other = packed.cell();
+            let (low, high) = if side == Side::Boundary { (other, cell) } else { (cell, other) };
+            Arc { cell: other, incidence: self.incidence_of(low, high, packed) }
+        };
+        Some((arc(list[0]), list.get(1).copied().map(arc)))
     }
 
     /// A complex of cells by increasing number, each with its boundary by increasing number; the cells on a boundary come
@@ -192,7 +206,7 @@ impl CellComplex {
             lengths.push(length);
         }
         counts.truncate(counts.iter().rposition(|&count| count > 0).map_or(0, |dim| dim + 1));
-        let words = lengths.iter().map(|&arcs| arena::capacity(arena::class_for(arcs as usize))).sum();
+        let words = lengths.iter().map(|&arcs| Header::words_of(arcs as usize)).sum();
         let mut complex = Self { arena: Arena::with_capacity(words), counts, ..Self::default() };
         complex.cells.reserve_exact(lengths.len());
         for (arcs, dim) in lengths.into_iter().zip(dims) {
@@ -215,6 +229,67 @@ impl CellComplex {
         complex
     }
 }
+
+/// The arcs of a cell on one side, by increasing cell.
+#[derive(Clone)]
+struct Arcs<'a> {
+    complex: &'a CellComplex,
+    cell: CellId,
+    side: Side,
+    slots: &'a [PackedArc],
+    num_arcs: usize,
+    /// The cell of the slot before.
+    before: Option<CellId>,
+}
+
+impl Arcs<'_> {
+    #[inline]
+    fn arc(&self, packed: PackedArc) -> Arc {
+        let other = packed.cell();
+        let (low, high) = if self.side == Side::Boundary { (other, self.cell) } else { (self.cell, other) };
+        Arc { cell: other, incidence: self.complex.incidence_of(low, high, packed) }
+    }
+}
+
+impl Iterator for Arcs<'_> {
+    type Item = Arc;
+
+    #[inline]
+    fn next(&mut self) -> Option<Arc> {
+        loop {
+            let (&packed, rest) = self.slots.split_first()?;
+            self.slots = rest;
+            // The others of a run are gaps.
+            if self.before.replace(packed.cell()) != Some(packed.cell()) {
+                self.num_arcs -= 1;
+                return Some(self.arc(packed));
+            }
+        }
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.num_arcs, Some(self.num_arcs))
+    }
+}
+
+impl DoubleEndedIterator for Arcs<'_> {
+    #[inline]
+    fn next_back(&mut self) -> Option<Arc> {
+        if self.num_arcs == 0 {
+            return None;
+        }
+        let (&(mut packed), mut rest) = self.slots.split_last()?;
+        while let Some((&before, further)) = rest.split_last().filter(|(before, _)| before.cell() == packed.cell()) {
+            (packed, rest) = (before, further);
+        }
+        self.slots = rest;
+        self.num_arcs -= 1;
+        Some(self.arc(packed))
+    }
+}
+
+impl ExactSizeIterator for Arcs<'_> {}
 
 /// The same cells with the same numbers, dimensions and incidences, whatever the memory they lie in.
 impl PartialEq for CellComplex {

@@ -112,6 +112,38 @@ pub enum Infeasible {
         /// The (i+1)-cell that stays.
         high: CellId,
     },
+    /// A cell that would be killed with a cycle bounds another one.
+    #[error("cell {cell} is on the boundary of cell {high}")]
+    Bounds {
+        /// The cell.
+        cell: CellId,
+        /// The other.
+        high: CellId,
+    },
+    /// A chain of i-cells has a cell that is none.
+    #[error("cell {cell} is no cell of dimension {dim}")]
+    NotInCycle {
+        /// The cell.
+        cell: CellId,
+        /// i.
+        dim: Dim,
+    },
+    /// A cycle does not have the cell once, in either orientation.
+    #[error("the coefficient of cell {cell} in the cycle is {coefficient}, not 1 or -1")]
+    NotOnCycle {
+        /// The cell.
+        cell: CellId,
+        /// Its coefficient.
+        coefficient: i128,
+    },
+    /// The boundary of a chain is not zero.
+    #[error("the chain is no cycle: its boundary has cell {face} {coefficient} times")]
+    NoCycle {
+        /// A cell of the boundary.
+        face: CellId,
+        /// Its coefficient.
+        coefficient: i128,
+    },
 }
 
 /// A pair of cells that was killed, with all that makes it again: the inverse operator MiC(i+1)C.
@@ -269,14 +301,13 @@ impl CellComplex {
     fn cancel_into(&mut self, low: CellId, high: CellId, refinement: &mut Refinement) -> Result<(), Infeasible> {
         let (dim, sign) = self.pair(low, high)?;
         refinement.reset(low, high, dim, sign);
-        refinement.extend(0, self.boundary(low));
-        refinement.extend(1, self.boundary(high).filter(|arc| arc.cell != low));
-        refinement.extend(2, self.coboundary(low).filter(|arc| arc.cell != high));
-        refinement.extend(3, self.coboundary(high));
+        refinement.extend(0, self.arcs(low, Side::Boundary));
+        refinement.extend(1, self.arcs(high, Side::Boundary).filter(|arc| arc.cell != low));
+        refinement.extend(2, self.arcs(low, Side::Coboundary).filter(|arc| arc.cell != high));
+        refinement.extend(3, self.arcs(high, Side::Coboundary));
         let mut scratch = std::mem::take(&mut self.scratch);
         let planned = self.plan_kill(refinement, &mut scratch.plan);
         if planned.is_ok() {
-            self.part(refinement);
             self.join(refinement, &mut scratch);
             self.counts[dim] -= 1;
             self.counts[dim + 1] -= 1;
@@ -300,16 +331,21 @@ impl CellComplex {
         }
         // Each neighbour loses an arc before it gets new ones.
         let width = pair.below_high().len();
+        if width <= 1 && pair.above_low().len() <= 1 {
+            return Ok(());
+        }
         let num_new = |entries: &mut dyn Iterator<Item = &(Incidence, bool)>| entries.filter(|entry| !entry.1).count();
         let of_r = |row: usize, _: &Arc| num_new(&mut plan[row * width..][..width].iter()).saturating_sub(1);
         let of_s = |column: usize, _: &Arc| num_new(&mut column_of(plan, column, width)).saturating_sub(1);
-        let wanted = [(pair.above_low(), Side::Boundary, &of_r as &dyn Fn(usize, &Arc) -> usize)];
-        let wanted = wanted.into_iter().chain([(pair.below_high(), Side::Coboundary, &of_s as _)]);
-        self.reserve_all(wanted.clone()).then_some(()).ok_or(too_large)
+        let rows = if width > 1 { pair.above_low() } else { &[] };
+        let columns = if pair.above_low().len() > 1 { pair.below_high() } else { &[] };
+        let wanted = [(rows, Side::Boundary, &of_r as &dyn Fn(usize, &Arc) -> usize)];
+        let wanted = wanted.into_iter().chain([(columns, Side::Coboundary, &of_s as _)]);
+        self.reserve_all(wanted).then_some(()).ok_or(too_large)
     }
 
     /// Makes room in lists of cells for as many more arcs as the functions say; whether there is room.
-    fn reserve_all<'w>(
+    pub(super) fn reserve_all<'w>(
         &mut self,
         wanted: impl Iterator<Item = (&'w [Arc], Side, &'w dyn Fn(usize, &Arc) -> usize)> + Clone,
     ) -> bool {
@@ -318,7 +354,7 @@ impl CellComplex {
             for (number, arc) in arcs.iter().enumerate() {
                 let header = self.cells[arc.cell.index()];
                 let more = more(number, arc);
-                if header.len(side) + more > side.longest() {
+                if header.slots(side) + more > side.longest() {
                     return false;
                 }
                 words += header.words_to_reserve(more);
@@ -338,35 +374,14 @@ impl CellComplex {
         true
     }
 
-    /// Takes the pair off the lists of its neighbours, and away.
-    fn part(&mut self, pair: &Refinement) {
-        let (low, high) = (pair.low, pair.high);
-        let Self { cells, arena, .. } = self;
-        let mut remove = |arcs: &[Arc], side, cell| {
-            arcs.iter().for_each(|arc| cells[arc.cell.index()].remove(side, cell, arena));
-        };
-        remove(pair.below_low(), Side::Coboundary, low);
-        remove(pair.below_high(), Side::Coboundary, high);
-        remove(pair.above_low(), Side::Boundary, low);
-        remove(pair.above_high(), Side::Boundary, high);
-        for cell in [low, high] {
-            cells[cell.index()].release(arena);
-            cells[cell.index()] = Header::VACANT;
-        }
-        if !self.elsewhere.is_empty() {
-            for (arcs, key) in pair.keys() {
-                arcs.iter().for_each(|arc| _ = self.elsewhere.remove(&key(arc.cell)));
-            }
-        }
-    }
-
-    /// Gives the neighbours of a pair that is gone their new incidences, by the plan.
+    /// Takes the pair away, and gives its neighbours their new incidences, by the plan.
     fn join(&mut self, pair: &Refinement, scratch: &mut Scratch) {
+        let (low, high) = (pair.low, pair.high);
         let (below, above) = (pair.below_high(), pair.above_low());
         let Scratch { plan, packed, .. } = scratch;
-        for (r, row) in above.iter().zip(plan.chunks(below.len().max(1))) {
+        for (number, r) in above.iter().enumerate() {
             packed.clear();
-            for (s, &(incidence, existed)) in below.iter().zip(row) {
+            for (s, &(incidence, existed)) in below.iter().zip(&plan[number * below.len()..]) {
                 let arc = PackedArc::new(Arc { cell: s.cell, incidence });
                 if existed {
                     self.set_incidence(s.cell, r.cell, incidence);
@@ -377,14 +392,26 @@ impl CellComplex {
                     }
                 }
             }
-            self.cells[r.cell.index()].insert(Side::Boundary, packed, &mut self.arena);
+            self.cells[r.cell.index()].exchange(Side::Boundary, low, packed, &mut self.arena);
         }
         for (column, s) in below.iter().enumerate() {
             packed.clear();
             let entries = column_of(plan, column, below.len());
             let new = above.iter().zip(entries).filter(|(_, entry)| !entry.1);
             packed.extend(new.map(|(r, &(incidence, _))| PackedArc::new(Arc { cell: r.cell, incidence })));
-            self.cells[s.cell.index()].insert(Side::Coboundary, packed, &mut self.arena);
+            self.cells[s.cell.index()].exchange(Side::Coboundary, high, packed, &mut self.arena);
+        }
+        let Self { cells, arena, .. } = self;
+        pair.below_low().iter().for_each(|arc| cells[arc.cell.index()].remove(Side::Coboundary, low, arena));
+        pair.above_high().iter().for_each(|arc| cells[arc.cell.index()].remove(Side::Boundary, high, arena));
+        for cell in [low, high] {
+            cells[cell.index()].release(arena);
+            cells[cell.index()] = Header::VACANT;
+        }
+        if !self.elsewhere.is_empty() {
+            for (arcs, key) in pair.keys() {
+                arcs.iter().for_each(|arc| _ = self.elsewhere.remove(&key(arc.cell)));
+            }
         }
     }
 
@@ -466,15 +493,7 @@ impl CellComplex {
         }
         let lists = [pair.below_low(), pair.below_high(), pair.above_low(), pair.above_high()];
         for (place, arcs) in lists.into_iter().enumerate() {
-            let dim = (pair.dim + place).checked_sub(1);
-            let mut before = None;
-            for arc in arcs {
-                let Arc { cell, incidence } = *arc;
-                let is_joined = incidence.multiplicity > 0 && incidence.is_consistent();
-                if dim.is_none() || self.dim_of(cell) != dim || before.replace(cell) >= Some(cell) || !is_joined {
-                    return Err(Infeasible::CannotJoin(cell));
-                }
-            }
+            self.check_joined((pair.dim + place).checked_sub(1), arcs)?;
         }
         plan.clear();
         for r in pair.above_low() {
@@ -487,11 +506,23 @@ impl CellComplex {
         }
         let one = &|_: usize, _: &Arc| 1_usize;
         let wanted = lists.into_iter().zip([Side::Coboundary, Side::Coboundary, Side::Boundary, Side::Boundary]);
-        let own = 2 * (pair.arcs.len() + 2);
+        let own = 4 * (pair.arcs.len() + 4);
         let fits = self.arena.has_room(own)
             && self.reserve_all(wanted.map(|(arcs, side)| (arcs, side, one as &dyn Fn(usize, &Arc) -> usize)))
             && self.arena.has_room(own);
         fits.then_some(()).ok_or(Infeasible::TooLarge { low, high })
+    }
+
+    /// Whether a new cell can be joined to these, which should be of a dimension and in order.
+    pub(super) fn check_joined(&self, dim: Option<Dim>, arcs: &[Arc]) -> Result<(), Infeasible> {
+        let mut before = None;
+        for &Arc { cell, incidence } in arcs {
+            let is_joined = incidence.multiplicity > 0 && incidence.is_consistent();
+            if dim.is_none() || self.dim_of(cell) != dim || before.replace(cell) >= Some(cell) || !is_joined {
+                return Err(Infeasible::CannotJoin(cell));
+            }
+        }
+        Ok(())
     }
 
     /// Takes the incidences that come from the pair from its neighbours, by the plan.
@@ -543,6 +574,7 @@ impl CellComplex {
                     let arc = PackedArc::new(Arc { cell: own_cell, incidence: own });
                     packed.insert(packed.partition_point(|other| other.cell() < own_cell), arc);
                 }
+                header.reserve(packed.len(), arena);
                 header.insert(side, packed, arena);
             }
             cells[cell.index()] = header;

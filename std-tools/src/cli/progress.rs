@@ -110,7 +110,7 @@ impl Phases {
                 if let Some((_, before)) = current.take() {
                     before.finish_and_clear();
                 }
-                *current = Some((what, bar(Some(total), "{msg:28!} [{bar:30}] {percent}%", what.to_owned())));
+                *current = Some((what, bar(Some(total), "{msg:28!} [{bar:30}] {percent:>3}% {eta}", what.to_owned())));
             }
         }
     }

@@ -8,8 +8,8 @@ use serde::Serialize;
 use sig_core::Relations;
 use sig_tools::cells::{CellComplex, read_cells};
 use sig_tools::mcc::{
-    Criterion, Extent, Field, Free, Length, MultiResolution, SimplifyOptions, SimplifyReport, Strategy, Types,
-    simplify, write_mcc,
+    Criterion, Extent, Field, Free, Length, MultiResolution, Precision, SimplifyOptions, SimplifyReport,
+    Strategy, Types, simplify, write_mcc,
 };
 use sig_tools::soup::Coordinates;
 use sig_tools::with_view;
@@ -30,6 +30,7 @@ Examples:
   sig simplify bunny.sigc -o bunny.mcc                        by the extent of the cells that go
   sig simplify brain.sigc -o brain.mcc --strategy batch       in rounds of independent operators
   sig simplify grid.sigc -o grid.mcc --criterion filtration   by the difference of the filtration values
+  sig simplify grid.sigc -o grid.mcc --precision exact        the cheapest pair first, and not one of like cost
   sig simplify lens.cells -o lens.mcc --criterion none        a cell complex in text")]
 pub(super) struct Args {
     /// A complex in a file of this program, or a cell complex in text; `-` is standard input
@@ -53,6 +54,10 @@ pub(super) struct Args {
     /// Which operators are used
     #[arg(long, value_name = "TYPES", default_value = "both")]
     types: TypesName,
+
+    /// How far costs are told apart; pairs of like cost go by number, which is faster
+    #[arg(long, value_name = "PRECISION", default_value = "2")]
+    precision: PrecisionName,
 
     /// Stop at so many cells
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -104,16 +109,41 @@ enum TypesName {
     Both,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum PrecisionName {
+    /// As they are
+    Exact,
+    /// By the power of 2
+    #[value(name = "2")]
+    Two,
+    /// By the power of 4
+    #[value(name = "4")]
+    Four,
+    /// By the power of 16
+    #[value(name = "16")]
+    Sixteen,
+}
+
 #[derive(Serialize)]
 struct Report {
     input_cells: Vec<usize>,
     simplifications: usize,
+    by_dimension: Vec<Killed>,
     base_cells: usize,
+    base_cells_by_dimension: Vec<usize>,
     rounds: usize,
     interrupted: bool,
     full_bytes: usize,
     multi_resolution_bytes: usize,
     output: String,
+}
+
+/// How many pairs of two dimensions were killed.
+#[derive(Serialize)]
+struct Killed {
+    dimensions: [usize; 2],
+    first_type: usize,
+    second_type: usize,
 }
 
 /// A complex, and what criteria want to know.
@@ -137,12 +167,17 @@ impl Args {
         let full_bytes = input.complex.memory_bytes();
         let coordinates = input.coordinates.clone();
         interrupt::begin();
-        let (recorded, report) = progress::during("simplifying", || self.simplify(input))?;
+        let (recorded, report) = self.simplify(input)?;
         let interrupted = interrupt::end();
         let view = recorded.view();
         let end = if interrupted { ", then interrupted" } else { "" };
         output::log(format_args!("did    {} simplifications{end}", grouped(report.simplifications)));
-        output::log(format_args!("made   a base of {} cells", grouped(view.num_base_cells())));
+        for killed in killed(&report) {
+            let Killed { dimensions: [low, high], first_type, second_type } = killed;
+            let [first, second] = [first_type, second_type].map(grouped);
+            output::log(format_args!("       {low}- and {high}-cells: {first} of the first type, {second} of the second"));
+        }
+        output::log(format_args!("made   a base of {}", counted(&report.base)));
         output::to_path(&self.target.output, self.target.existing(), |out| {
             write_mcc(&recorded, coordinates.as_ref(), out)
         })?;
@@ -153,7 +188,9 @@ impl Args {
             output::json(&Report {
                 input_cells,
                 simplifications: report.simplifications,
+                by_dimension: killed(&report).collect(),
                 base_cells: view.num_base_cells(),
+                base_cells_by_dimension: report.base,
                 rounds: report.rounds,
                 interrupted,
                 full_bytes,
@@ -170,6 +207,14 @@ impl Args {
             Some(_) => CriterionName::Extent,
             None => CriterionName::None,
         });
+        // Each pair is two cells.
+        let most = complex.num_cells() as u64 / 2;
+        let bars = progress::is_watched().then(progress::Phases::new);
+        let tell = |done| {
+            if let Some(bars) = &bars {
+                bars.step("simplifying", done, most);
+            }
+        };
         let options = SimplifyOptions {
             strategy: match self.strategy {
                 StrategyName::Step => Strategy::Step,
@@ -179,9 +224,15 @@ impl Args {
                 TypesName::First => Types::First,
                 TypesName::Both => Types::Both,
             },
+            precision: match self.precision {
+                PrecisionName::Exact => Precision::Exact,
+                PrecisionName::Two => Precision::Two,
+                PrecisionName::Four => Precision::Four,
+                PrecisionName::Sixteen => Precision::Sixteen,
+            },
             target_cells: self.target_cells,
             max_error: self.max_error,
-            progress: None,
+            progress: Some(&tell),
             interrupt: Some(interrupt::flag()),
         };
         let place = || coordinates.as_ref().context("this criterion needs coordinates, and the input has none");
@@ -197,7 +248,9 @@ impl Args {
             }
             CriterionName::None => Box::new(Free),
         };
-        Ok(simplify(complex, &mut *criterion, &options))
+        let simplified = simplify(complex, &mut *criterion, &options);
+        bars.iter().for_each(progress::Phases::clear);
+        Ok(simplified)
     }
 }
 
@@ -219,6 +272,11 @@ fn read(path: &Path, how: &How) -> anyhow::Result<Input> {
             Ok(Input { complex, coordinates: None, filtration: None })
         }
     }
+}
+
+fn killed(report: &SimplifyReport) -> impl Iterator<Item = Killed> {
+    let pairs = report.by_dimension.iter().enumerate();
+    pairs.map(|(low, &[first_type, second_type])| Killed { dimensions: [low, low + 1], first_type, second_type })
 }
 
 /// How many cells there are, and of each dimension.

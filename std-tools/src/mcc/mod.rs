@@ -19,9 +19,11 @@
 //! # }
 //! ```
 
+mod batch;
 mod criterion;
 mod front;
 mod picture;
+mod queue;
 mod record;
 mod simplify;
 mod site_tree;
@@ -32,6 +34,6 @@ pub use criterion::{Criterion, Extent, Field, Free, Length, Pair};
 pub use front::{BadRefinement, Front, Moved, apply_in_order, members};
 pub use picture::{DrawError, Drawing, ViewAxis};
 pub use record::MultiResolution;
-pub use simplify::{SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
+pub use simplify::{Precision, SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
 pub use store::{MccFile, write_mcc};
 pub use verify::{BrokenMcc, verify};

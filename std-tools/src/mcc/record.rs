@@ -144,8 +144,13 @@ impl Recorder {
         Self { num_dims: complex.counts().len(), sites: sites(complex), pairs, arcs, large }
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(super) const fn len(&self) -> usize {
         self.pairs.len()
+    }
+
+    /// d + 1 of the full complex.
+    pub(super) const fn num_dims(&self) -> usize {
+        self.num_dims
     }
 
     pub(super) fn push(&mut self, refinement: &Refinement, error: f32) {

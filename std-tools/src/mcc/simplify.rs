@@ -5,17 +5,18 @@
 //! pivot comes up. Entries are never taken out: one that comes up is looked at anew, thrown away if its pivot is none any
 //! more, put back if it costs more by now, and done otherwise.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
-use sig_core::CellId;
+use sig_core::{Arc, CellId};
 
 use super::criterion::{Criterion, Pair};
+use super::queue::{Entry, Queue};
 use super::record::{MultiResolution, Recorder};
-use crate::cells::{CellComplex, Instance, Refinement};
+use crate::build::narrow;
+use crate::cells::{CellComplex, Instance, OperatorType, Refinement};
 
 /// In which order pairs are killed.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -37,6 +38,34 @@ pub enum Types {
     Both,
 }
 
+/// How far costs are told apart: pairs whose costs are not go by number, which is along the complex.
+///
+/// A coarser order is faster, because cells that are near lie near in memory, and because fewer costs grow into another class
+/// while they wait. In dimension 3 and more it ends with fewer cells too: see [`simplify`]. The errors that are recorded are
+/// exact all the same.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Precision {
+    /// As they are: the cheapest pair comes first.
+    Exact,
+    /// By the power of 2.
+    #[default]
+    Two,
+    /// By the power of 4.
+    Four,
+    /// By the power of 16.
+    Sixteen,
+}
+
+impl Precision {
+    /// The bits of a cost that do not count: those of the fraction, and the lowest of the exponent.
+    const DROPPED: [u32; 4] = [0, 23, 24, 25];
+
+    #[inline]
+    pub(super) const fn dropped_bits(self) -> u32 {
+        Self::DROPPED[self as usize]
+    }
+}
+
 /// How to simplify, and how far.
 #[derive(Clone, Copy, Default)]
 pub struct SimplifyOptions<'a> {
@@ -44,6 +73,8 @@ pub struct SimplifyOptions<'a> {
     pub strategy: Strategy,
     /// By which operators.
     pub types: Types,
+    /// How far costs are told apart.
+    pub precision: Precision,
     /// Stop at so many cells.
     pub target_cells: usize,
     /// Do not do what costs more.
@@ -55,10 +86,14 @@ pub struct SimplifyOptions<'a> {
 }
 
 /// What a simplification did.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct SimplifyReport {
     /// Pairs killed.
     pub simplifications: usize,
+    /// For each dimension of the lower cell of a pair, how many were killed by operators of the first type and of the second.
+    pub by_dimension: Vec<[usize; 2]>,
+    /// The cells of the base, by dimension.
+    pub base: Vec<usize>,
     /// Entries of the queue that were put back because they cost more.
     pub put_back: usize,
     /// Rounds: of a batch each round, of steps each search for what is feasible, of which the last finds nothing unless a
@@ -80,6 +115,7 @@ pub fn simplify<C: Criterion + ?Sized>(
     let start = Instant::now();
     let (recorder, mut report) = run(&mut complex, criterion, options);
     report.simplify_seconds = start.elapsed().as_secs_f64();
+    report.base = complex.counts().to_vec();
     (recorder.finish(&complex), report)
 }
 
@@ -91,7 +127,8 @@ fn run<C: Criterion + ?Sized>(
 ) -> (Recorder, SimplifyReport) {
     let recorder = Recorder::new(complex);
     let report = SimplifyReport::default();
-    let mut work = Work { complex, criterion, options, recorder, report, refinement: Refinement::default() };
+    let (max_error, refinement) = (options.max_error.unwrap_or(f32::INFINITY), Refinement::default());
+    let mut work = Work { complex, criterion, options, max_error, recorder, report, refinement };
     match options.strategy {
         Strategy::Step => work.step_by_step(),
         Strategy::Batch => work.in_batches(),
@@ -100,124 +137,74 @@ fn run<C: Criterion + ?Sized>(
     (work.recorder, work.report)
 }
 
-/// An entry of the queue: the bits of the cost, which is not negative, so that they compare as it does; then the pivot, and the
-/// instance in the lowest bit.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
-    cost: u32,
-    pivot: u32,
-}
-
-impl Entry {
-    fn new(cost: f32, pivot: CellId, instance: Instance) -> Self {
-        // −0 is 0.
-        let cost = (cost + 0.0).to_bits();
-        Self { cost, pivot: pivot.number() << 1 | u32::from(instance == Instance::Second) }
-    }
-
-    fn cost(self) -> f32 {
-        f32::from_bits(self.cost)
-    }
-
-    fn pivot(self) -> (CellId, Instance) {
-        let instance = if self.pivot & 1 == 1 { Instance::Second } else { Instance::First };
-        (CellId::new(self.pivot >> 1), instance)
-    }
-}
-
-/// The cheapest entries first: those that were there at the start, sorted, and a heap of those that came since.
-struct Queue {
-    sorted: Vec<Entry>,
-    next: usize,
-    heap: BinaryHeap<Reverse<Entry>>,
-}
-
-impl Queue {
-    fn pop(&mut self) -> Option<Entry> {
-        match (self.sorted.get(self.next), self.heap.peek()) {
-            (Some(&first), Some(&Reverse(other))) if other < first => self.heap.pop().map(|Reverse(entry)| entry),
-            (Some(&first), _) => {
-                self.next += 1;
-                Some(first)
-            }
-            (None, _) => self.heap.pop().map(|Reverse(entry)| entry),
-        }
-    }
-}
-
-struct Work<'w, C: ?Sized> {
-    complex: &'w mut CellComplex,
-    criterion: &'w mut C,
-    options: &'w SimplifyOptions<'w>,
-    recorder: Recorder,
-    report: SimplifyReport,
-    refinement: Refinement,
+pub(super) struct Work<'w, C: ?Sized> {
+    pub(super) complex: &'w mut CellComplex,
+    pub(super) criterion: &'w mut C,
+    pub(super) options: &'w SimplifyOptions<'w>,
+    pub(super) max_error: f32,
+    pub(super) recorder: Recorder,
+    pub(super) report: SimplifyReport,
+    pub(super) refinement: Refinement,
 }
 
 impl<C: Criterion + ?Sized> Work<'_, C> {
     /// The cheapest pair of a pivot, if it is one, and its cost. Of equal ones, the cell with the fewer neighbours goes, then
     /// that with the larger number.
     #[inline]
-    fn best(&self, pivot: CellId, instance: Instance) -> Option<(f32, Pair)> {
-        let complex = &*self.complex;
-        let count = match instance {
-            Instance::First => complex.num_boundary(pivot),
-            Instance::Second => complex.num_coboundary(pivot),
+    pub(super) fn best(&self, pivot: CellId, instance: Instance) -> Option<(f32, Pair)> {
+        let (first, second) = self.complex.one_or_two(pivot, instance)?;
+        let one = self.candidate(pivot, instance, first, second);
+        let Some((second, other)) = second.and_then(|arc| {
+            self.candidate(pivot, instance, arc, Some(first)).map(|candidate| (arc, candidate))
+        }) else {
+            return one;
         };
-        if count == 0 || count > 2 {
+        let Some(one) = one else { return Some(other) };
+        let is_better = other.0 < one.0 || other.0 == one.0 && {
+            // The other has the larger number.
+            let neighbours = |cell| match instance {
+                Instance::First => self.complex.num_coboundary(cell),
+                Instance::Second => self.complex.num_boundary(cell),
+            };
+            neighbours(second.cell) <= neighbours(first.cell)
+        };
+        Some(if is_better { other } else { one })
+    }
+
+    /// The pair of a pivot and one of its neighbours, if it may be killed, and its cost.
+    #[inline]
+    fn candidate(&self, pivot: CellId, instance: Instance, arc: Arc, other: Option<Arc>) -> Option<(f32, Pair)> {
+        let complex = &*self.complex;
+        let (low, high) = if instance == Instance::First { (arc.cell, pivot) } else { (pivot, arc.cell) };
+        if arc.incidence.multiplicity != 1
+            || self.options.types == Types::First
+                && (complex.num_boundary(high) == 1 || complex.num_coboundary(low) == 1)
+        {
             return None;
         }
-        let mut best: Option<(f32, usize, Reverse<CellId>, Pair)> = None;
-        let mut consider = |cell: CellId, other: Option<CellId>, multiplicity: u32| {
-            let (low, high) = if instance == Instance::First { (cell, pivot) } else { (pivot, cell) };
-            let (below, above) = (complex.num_boundary(high), complex.num_coboundary(low));
-            let is_second_type = below.min(above) == 1;
-            if multiplicity != 1 || is_second_type && self.options.types == Types::First {
-                return;
-            }
-            let pair = Pair { low, high, kept: other };
-            let cost = self.criterion.cost(complex, pair);
-            let neighbours = if instance == Instance::First { above } else { below };
-            let candidate = (cost, neighbours, Reverse(cell), pair);
-            let is_better = |best: &(f32, usize, Reverse<CellId>, Pair)| {
-                (candidate.0, candidate.1, candidate.2) < (best.0, best.1, best.2)
-            };
-            if cost < f32::INFINITY && best.as_ref().is_none_or(is_better) {
-                best = Some(candidate);
-            }
-        };
-        let (mut cells, mut times) = ([None; 2], [0; 2]);
-        let mut take = |place: usize, arc: sig_core::Arc| {
-            cells[place] = Some(arc.cell);
-            times[place] = arc.incidence.multiplicity;
-        };
-        match instance {
-            Instance::First => complex.boundary(pivot).enumerate().for_each(|(place, arc)| take(place, arc)),
-            Instance::Second => complex.coboundary(pivot).enumerate().for_each(|(place, arc)| take(place, arc)),
-        }
-        for place in 0..2 {
-            if let Some(cell) = cells[place] {
-                consider(cell, cells[1 - place], times[place]);
-            }
-        }
-        best.map(|(cost, _, _, pair)| (cost, pair))
+        let pair = Pair { low, high, kept: other.map(|other| other.cell) };
+        let cost = self.criterion.cost(complex, pair);
+        (cost < f32::INFINITY && cost <= self.max_error).then_some((cost, pair))
     }
 
-    /// All pivots among some cells, by cost.
-    fn pivots(&self, cells: &[CellId]) -> Vec<Entry> {
-        let max_error = self.options.max_error.unwrap_or(f32::INFINITY);
-        let entries = |&cell: &CellId| {
-            [Instance::First, Instance::Second].into_iter().filter_map(move |instance| {
-                let (cost, _) = self.best(cell, instance).filter(|&(cost, _)| cost <= max_error)?;
-                Some(Entry::new(cost, cell, instance))
-            })
-        };
-        let mut entries: Vec<Entry> = cells.par_iter().flat_map_iter(entries).collect();
-        entries.par_sort_unstable();
-        entries
+    #[inline]
+    pub(super) fn entry(&self, cost: f32, cell: CellId, instance: Instance) -> Entry {
+        let rank = if self.options.strategy == Strategy::Batch { self.rank(cell, instance) } else { 0 };
+        Entry::new(cost, self.options.precision, rank, cell, instance)
     }
 
-    fn is_done(&self) -> bool {
+    /// The entries of all pivots.
+    pub(super) fn pivots(&self) -> Vec<Entry> {
+        let entries = |cell: u32| {
+            let cell = CellId::new(cell);
+            let entry = move |instance| self.best(cell, instance).map(|(cost, _)| self.entry(cost, cell, instance));
+            [Instance::First, Instance::Second].into_iter().filter_map(entry)
+        };
+        (0..narrow(self.complex.num_ids())).into_par_iter().flat_map_iter(entries).collect()
+    }
+
+    /// Whether a target is met or an interrupt came; tells the progress.
+    pub(super) fn is_done(&self) -> bool {
         let done = self.recorder.len();
         if done.is_multiple_of(4096) {
             if let Some(progress) = self.options.progress {
@@ -231,49 +218,57 @@ impl<C: Criterion + ?Sized> Work<'_, C> {
     }
 
     /// Kills a pair; whether that was feasible.
-    fn kill(&mut self, pair: Pair, cost: f32) -> bool {
+    pub(super) fn kill(&mut self, pair: Pair, cost: f32) -> bool {
         // Only numbers that grow too large can forbid it.
         if self.complex.kill_into(pair.low, pair.high, &mut self.refinement).is_err() {
             return false;
         }
+        let is_second = self.refinement.kinds().any(|kind| kind.operator_type == OperatorType::Second);
+        let dim = self.refinement.dim;
+        if self.report.by_dimension.len() <= dim {
+            self.report.by_dimension.resize(dim + 1, [0; 2]);
+        }
+        self.report.by_dimension[dim][usize::from(is_second)] += 1;
         self.recorder.push(&self.refinement, cost);
         self.criterion.killed(pair);
         true
     }
 
     fn step_by_step(&mut self) {
-        let max_error = self.options.max_error.unwrap_or(f32::INFINITY);
-        let is_monotone = self.criterion.is_monotone();
-        let mut lengths = Vec::new();
         loop {
-            let cells: Vec<CellId> = self.complex.cells().collect();
-            let mut queue = Queue { sorted: self.pivots(&cells), next: 0, heap: BinaryHeap::new() };
-            drop(cells);
             self.report.rounds += 1;
             let before = self.recorder.len();
-            while let Some(entry) = queue.pop() {
-                if self.is_done() {
-                    return;
-                }
-                let (pivot, instance) = entry.pivot();
-                let Some((cost, pair)) = self.best(pivot, instance) else { continue };
-                if cost > entry.cost() {
-                    if cost <= max_error {
-                        queue.heap.push(Reverse(Entry::new(cost, pivot, instance)));
-                        self.report.put_back += 1;
-                    }
-                    continue;
-                }
-                self.lengths_around(pair, &mut lengths);
-                if self.kill(pair, cost) {
-                    self.queue_new(&mut queue, &lengths, is_monotone, max_error);
-                }
-            }
+            let mut queue = Queue::new();
+            self.pivots().into_iter().for_each(|entry| queue.push(entry));
             // Operators that come with a neighbour's neighbours are not queued when they come.
-            if self.recorder.len() == before {
+            if self.drain(&mut queue).is_break() || self.recorder.len() == before {
                 return;
             }
         }
+    }
+
+    /// Kills what is queued and what becomes feasible by it, the cheapest first; a break if a target is met or an interrupt came.
+    pub(super) fn drain(&mut self, queue: &mut Queue) -> ControlFlow<()> {
+        let is_monotone = self.criterion.is_monotone();
+        let mut lengths = Vec::new();
+        while let Some(entry) = queue.pop() {
+            if self.is_done() {
+                return ControlFlow::Break(());
+            }
+            let (pivot, instance) = entry.pivot();
+            let Some((cost, pair)) = self.best(pivot, instance) else { continue };
+            let now = self.entry(cost, pivot, instance);
+            if now > entry {
+                queue.push(now);
+                self.report.put_back += 1;
+                continue;
+            }
+            self.lengths_around(pair, &mut lengths);
+            if self.kill(pair, cost) {
+                self.queue_new(queue, &lengths, is_monotone);
+            }
+        }
+        ControlFlow::Continue(())
     }
 
     /// The lengths of the lists that a kill will join, in the order of the refinement.
@@ -287,7 +282,7 @@ impl<C: Criterion + ?Sized> Work<'_, C> {
     }
 
     /// Queues the pivots that the last kill made. If costs never fall, those that were pivots before are queued already.
-    fn queue_new(&self, queue: &mut Queue, lengths: &[usize], is_monotone: bool, max_error: f32) {
+    fn queue_new(&self, queue: &mut Queue, lengths: &[usize], is_monotone: bool) {
         let complex = &*self.complex;
         let mut add = |cell: CellId, instance: Instance, before: usize| {
             let after = match instance {
@@ -297,8 +292,8 @@ impl<C: Criterion + ?Sized> Work<'_, C> {
             if after > 2 || is_monotone && before == after {
                 return;
             }
-            if let Some((cost, _)) = self.best(cell, instance).filter(|&(cost, _)| cost <= max_error) {
-                queue.heap.push(Reverse(Entry::new(cost, cell, instance)));
+            if let Some((cost, _)) = self.best(cell, instance) {
+                queue.push(self.entry(cost, cell, instance));
             }
         };
         let (below, above) = (self.refinement.below_high(), self.refinement.above_low());
@@ -307,40 +302,5 @@ impl<C: Criterion + ?Sized> Work<'_, C> {
         above.iter().zip(above_lengths).for_each(|(r, &before)| add(r.cell, Instance::First, before));
         self.refinement.below_low().iter().for_each(|arc| add(arc.cell, Instance::Second, usize::MAX));
         self.refinement.above_high().iter().for_each(|arc| add(arc.cell, Instance::First, usize::MAX));
-    }
-
-    fn in_batches(&mut self) {
-        let mut cells: Vec<CellId> = self.complex.cells().collect();
-        // The last round that involved each cell.
-        let mut involved = vec![0_u32; self.complex.num_ids()];
-        for round in 1.. {
-            self.report.rounds += 1;
-            let before = self.recorder.len();
-            for entry in self.pivots(&cells) {
-                if self.is_done() {
-                    return;
-                }
-                let (pivot, instance) = entry.pivot();
-                if involved[pivot.index()] == round {
-                    continue;
-                }
-                let Some((cost, pair)) = self.best(pivot, instance) else { continue };
-                let complex = &*self.complex;
-                let [low, high] = [pair.low, pair.high];
-                let around = || {
-                    let of_low = complex.boundary(low).chain(complex.coboundary(low));
-                    of_low.chain(complex.boundary(high)).chain(complex.coboundary(high)).map(|arc| arc.cell.index())
-                };
-                if around().any(|cell| involved[cell] == round) {
-                    continue;
-                }
-                around().for_each(|cell| involved[cell] = round);
-                self.kill(pair, cost);
-            }
-            if self.recorder.len() == before {
-                return;
-            }
-            cells.retain(|&cell| self.complex.contains(cell));
-        }
     }
 }
