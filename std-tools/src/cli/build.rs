@@ -201,7 +201,11 @@ impl Args {
             output: path.display().to_string(),
             file_bytes: outcome.file_bytes,
             index_bits: outcome.width.bits(),
-            out_of_core: Some(OutOfCore { pieces: outcome.pieces, temporary_bytes: outcome.temporary_bytes }),
+            out_of_core: Some(OutOfCore {
+                pieces: outcome.pieces,
+                temporary_bytes: outcome.temporary_bytes,
+                peak_bytes: peak_memory(),
+            }),
             ..Report::new(outcome.simplices, &outcome.report, inputs, &MergeReport::default())
         })
     }
@@ -285,6 +289,15 @@ struct Report {
 struct OutOfCore {
     pieces: usize,
     temporary_bytes: u64,
+    /// The most memory that was resident, where the system tells.
+    peak_bytes: Option<u64>,
+}
+
+/// The most memory of this process that was resident so far, if the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
 #[derive(Serialize)]
@@ -389,9 +402,10 @@ impl Report {
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");
         note(self.unused_vertices_kept, "unused vertices kept (--drop-unused drops them)");
         note(self.unused_vertices_dropped, "unused vertices dropped");
-        if let Some(OutOfCore { pieces, temporary_bytes }) = &self.out_of_core {
+        if let Some(OutOfCore { pieces, temporary_bytes, peak_bytes }) = &self.out_of_core {
             let (pieces, bytes) = (grouped(pieces), grouped(temporary_bytes));
-            output::log(format_args!("       in {pieces} pieces, {bytes} bytes of temporary data"));
+            let peak = peak_bytes.map_or(String::new(), |peak| format!(", {} bytes of memory", grouped(peak)));
+            output::log(format_args!("       in {pieces} pieces, {bytes} bytes of temporary data{peak}"));
         }
         let (bytes, width) = (grouped(self.file_bytes), self.index_bits);
         output::log(format_args!("wrote  {}: {bytes} bytes, {width}-bit indices, {:.2} s", self.output, self.seconds));

@@ -259,7 +259,9 @@ impl<'a> Encoding<'a> {
             let least = width_of_vertices(arrays.ids(0).len());
             encoding.last_vertices = Some(Indices::from_u32(&arrays.last_vertices, least));
             if options.lower_neighbours.unwrap_or(arrays.first.len() > LOWER_NEIGHBOURS_FROM) {
-                let offset = |vertex: usize| arrays.child_offsets.get(vertex).map_or(0, |offset| offset.to_usize());
+                // In dimension 0 there are no offsets of children, nor children.
+                let end = arrays.num_simplices;
+                let offset = |vertex: usize| arrays.child_offsets.get(vertex).map_or(end, |offset| offset.to_usize());
                 encoding.add_lower_neighbours(arrays.ids(0).len(), |vertex| {
                     arrays.last_vertices[offset(vertex)..offset(vertex + 1)].iter().map(|&end| end as usize)
                 });

@@ -4,7 +4,7 @@
 //! The vertices are held in memory, with their labels and coordinates; the listed simplices are on disk ([`Spill`]). The
 //! vertices, in their order, are cut into ranges. Whatever contains a simplex contains its least vertex, so all that is to
 //! be known about the simplices whose least vertex is in a range is in the *piece* of the range: the complex of the listed
-//! simplices that have a vertex there ([`piece`]), which the builder builds in memory, many at a time. The simplices that a
+//! simplices that have a vertex there (`piece`), which the builder builds in memory, one on each thread. The simplices that a
 //! piece owns are consecutive in each dimension of the whole. One step a file:
 //!
 //! 1. `plan` samples the complex and cuts it into ranges whose pieces fit the memory; the listed simplices are dealt out
@@ -95,7 +95,8 @@ pub enum Error {
     Io(#[from] io::Error),
     /// The vertices do not fit the memory.
     #[error(
-        "{vertices} vertices with labels and coordinates take {needed} bytes of the {memory} that are allowed; simplices need the rest"
+        "the program and {vertices} vertices with labels and coordinates take {needed} bytes, at most three quarters of the {memory} \
+         that are allowed; simplices need the rest"
     )]
     Vertices {
         /// The number of vertices.
@@ -356,7 +357,7 @@ impl Pieces {
             }
             Cut::ToFit(bytes) => bytes / PEAK,
         };
-        let mut survey = Survey::new(listed)?;
+        let mut survey = Survey::new(listed, bytes)?;
         let limit = survey.simplices(bytes);
         loop {
             let ranges = survey.cut(bytes / 4 * 3);

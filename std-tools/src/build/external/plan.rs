@@ -12,6 +12,8 @@ use crate::build::{BuildError, SigArrays};
 const SAMPLES: usize = 8;
 /// Listed simplices of a sample, about.
 const SAMPLE: usize = 1 << 14;
+/// Bytes of a simplex, roughly, where they are not known.
+const BYTES_PER_SIMPLEX: usize = 64;
 /// Vertices that share an entry of [`Ranges::hints`], as a power of two.
 const HINT_BITS: u32 = 8;
 
@@ -78,8 +80,8 @@ struct Sample {
 }
 
 impl Survey {
-    /// One pass over the listed simplices.
-    pub(super) fn new(listed: &Listed<'_>) -> Result<Self, Error> {
+    /// One pass over the listed simplices; samples are built in memory for a result of `bytes`.
+    pub(super) fn new(listed: &Listed<'_>, bytes: u64) -> Result<Self, Error> {
         let num_vertices = listed.order.num_vertices();
         let mut weights = vec![0_u32; num_vertices];
         let total: usize = listed.spill.counts().iter().enumerate().map(|(dim, count)| (dim + 1) * count).sum();
@@ -102,15 +104,15 @@ impl Survey {
             }
             Ok(())
         })?;
-        let (mut bytes_per_weight, mut bytes, mut simplices) = (0_f64, 0, 0);
+        let (mut bytes_per_weight, mut all_bytes, mut simplices) = (0_f64, 0, 0);
         for sample in samples.into_iter().filter(|sample| sample.weight > 0) {
             let weight = sample.weight;
-            let (sample_bytes, sample_simplices) = sample.size()?;
+            let (sample_bytes, sample_simplices) = sample.size(bytes / BYTES_PER_SIMPLEX as u64)?;
             bytes_per_weight = bytes_per_weight.max(ratio(sample_bytes, weight));
-            bytes += sample_bytes;
-            simplices += sample_simplices;
+            all_bytes = sample_bytes.saturating_add(all_bytes);
+            simplices = sample_simplices.saturating_add(simplices);
         }
-        Ok(Self { weights, bytes_per_weight, bytes_per_simplex: ratio(bytes, simplices.max(1)).max(16.0) })
+        Ok(Self { weights, bytes_per_weight, bytes_per_simplex: ratio(all_bytes, simplices.max(1)).max(16.0) })
     }
 
     /// Assume that so many times more memory is needed than it seemed.
@@ -162,12 +164,12 @@ impl Sample {
     }
 
     /// The bytes of the complex of the sample, and its simplices.
-    fn size(self) -> Result<(usize, usize), Error> {
-        match Piece::build(&self.range, self.words, 1 << 24) {
+    fn size(self, limit: u64) -> Result<(usize, usize), Error> {
+        match Piece::build(&self.range, self.words, limit) {
             Ok(piece) => Ok((bytes(&piece.arrays), piece.arrays.num_simplices)),
             Err(BuildError::TooLarge { at_least, .. }) => {
-                let simplices = usize::try_from(at_least).unwrap_or(usize::MAX / 64);
-                Ok((64 * simplices, simplices))
+                let simplices = usize::try_from(at_least).unwrap_or(usize::MAX);
+                Ok((simplices.saturating_mul(BYTES_PER_SIMPLEX), simplices))
             }
             Err(error) => Err(error.into()),
         }

@@ -82,30 +82,13 @@ impl Whole {
         options: &EncodeOptions<'_>,
     ) -> Result<(Output<'f>, IndexWidth, u64), Error> {
         let width = width_for(self.largest, options)?;
-        let vertex_width = width_of_vertices(labels.len());
-        let counts = self.counts();
+        let shapes = self.shapes(width, labels.len(), options);
         let below = self.first.last().copied().unwrap_or(0);
-        let boundary: usize = counts.iter().enumerate().skip(1).map(|(dim, count)| (dim + 1) * count).sum();
-        let child_offsets = if self.num_simplices > 0 { below + 1 } else { 0 };
-        let mut shapes = vec![
-            (SectionKind::Lookup, width, self.first.len()),
-            (SectionKind::Boundary, width, boundary),
-            (SectionKind::Pointers, width, below),
-            (SectionKind::Lists, width, self.num_entries),
-        ];
-        if options.tree {
-            shapes.push((SectionKind::ChildOffsets, width, child_offsets));
-            shapes.push((SectionKind::LastVertices, vertex_width, self.num_simplices));
-            if options.lower_neighbours.unwrap_or(self.first.len() > LOWER_NEIGHBOURS_FROM) {
-                shapes.push((SectionKind::LowerOffsets, width, labels.len() + 1));
-                shapes.push((SectionKind::LowerNeighbours, vertex_width, counts.get(1).copied().unwrap_or(0)));
-            }
-        }
         // The encoder looks at the lengths of these columns only, so they are one and the same memory that is never
         // touched, hence never there.
-        let largest = shapes.iter().map(|&(_, width, count)| count * bytes(width)).max().unwrap_or(0);
-        let room =
-            MmapOptions::new().len(largest.max(below.max(self.num_tops) / 8 + 1)).no_reserve_swap().map_anon()?;
+        let bit_bytes = below.max(self.num_tops) / 8 + 1;
+        let largest = shapes.iter().map(|&(_, width, count)| count * bytes(width)).fold(bit_bytes, usize::max);
+        let room = MmapOptions::new().len(largest).no_reserve_swap().map_anon()?;
         let column = |width, count: usize| match width {
             IndexWidth::Bits16 => Column::U16(bytemuck::cast_slice(&room[..2 * count])),
             IndexWidth::Bits32 => Column::U32(bytemuck::cast_slice(&room[..4 * count])),
@@ -118,26 +101,8 @@ impl Whole {
         if self.is_oriented {
             sections.push(Section::new(SectionKind::Parity, bits(self.num_tops)));
         }
-        // The others are in memory.
-        let lookup: Vec<u64> = self.first.iter().map(|&first| first as u64).collect();
         let labels = EncodedLabels::new(labels);
-        let mut known = vec![];
-        match &labels {
-            EncodedLabels::Numbered => {}
-            EncodedLabels::Integers(labels) => {
-                known.push(Section::new(SectionKind::IntegerLabels, Column::U64(labels)))
-            }
-            EncodedLabels::Text { offsets, text } => {
-                known.push(Section::new(SectionKind::LabelOffsets, Column::U64(offsets)));
-                known.push(Section::new(SectionKind::LabelText, Column::U8(text.as_bytes())));
-            }
-        }
-        if let Some((components, column)) = coordinates.map(coordinate_column) {
-            known.push(Section { components, ..Section::new(SectionKind::Coordinates, column) });
-        }
-        if let Some(provenance) = options.provenance {
-            known.push(Section::new(SectionKind::Provenance, Column::U8(provenance.as_bytes())));
-        }
+        let known = known_sections(&labels, coordinates, options.provenance);
         sections.extend(known.iter().copied());
         sections.sort_by_key(|section| section.kind);
         let format = EncodeError::Format;
@@ -148,27 +113,79 @@ impl Whole {
         }
         let element = |kind: SectionKind| {
             let section = sections.iter().find(|section| section.kind == kind);
-            section.map_or(4, |section| element_bytes(&section.column))
+            section.map_or(size_of::<u32>(), |section| element_bytes(&section.column))
         };
         let output = Output::new(file, &encoder, options.checksums, element)?;
+        let lookup: Vec<u64> = self.first.iter().map(|&first| first as u64).collect();
         output.column(SectionKind::Lookup, &Column::U64(&lookup))?;
         known.iter().try_for_each(|section| output.column(section.kind, &section.column))?;
-        self.end_offsets(&output, child_offsets, counts.get(1).copied().unwrap_or(0))?;
+        self.end_offsets(&output)?;
         Ok((output, width, encoder.file_bytes()))
     }
 
+    /// The sections of integers that the pieces fill, and the lookup table: the width of each and how many there are.
+    fn shapes(
+        &self,
+        width: IndexWidth,
+        num_vertices: usize,
+        options: &EncodeOptions<'_>,
+    ) -> Vec<(SectionKind, IndexWidth, usize)> {
+        let counts = self.counts();
+        let below = self.first.last().copied().unwrap_or(0);
+        let mut shapes = vec![
+            (SectionKind::Lookup, width, self.first.len()),
+            (SectionKind::Boundary, width, self.rows(self.first.len())),
+            (SectionKind::Pointers, width, below),
+            (SectionKind::Lists, width, self.num_entries),
+        ];
+        if options.tree {
+            let vertex_width = width_of_vertices(num_vertices);
+            let child_offsets = if self.num_simplices > 0 { below + 1 } else { 0 };
+            shapes.push((SectionKind::ChildOffsets, width, child_offsets));
+            shapes.push((SectionKind::LastVertices, vertex_width, self.num_simplices));
+            if options.lower_neighbours.unwrap_or(self.first.len() > LOWER_NEIGHBOURS_FROM) {
+                shapes.push((SectionKind::LowerOffsets, width, num_vertices + 1));
+                shapes.push((SectionKind::LowerNeighbours, vertex_width, counts.get(1).copied().unwrap_or(0)));
+            }
+        }
+        shapes
+    }
+
     /// Writes the last entries of the offsets, which are of no piece.
-    fn end_offsets(&self, output: &Output<'_>, child_offsets: usize, num_edges: usize) -> io::Result<()> {
-        if let Some(last) = child_offsets.checked_sub(1) {
-            let mut run = output.numbers(SectionKind::ChildOffsets, last);
+    fn end_offsets(&self, output: &Output<'_>) -> io::Result<()> {
+        if let Some(&below) = self.first.last() {
+            let mut run = output.numbers(SectionKind::ChildOffsets, below);
             run.push(self.num_simplices as u64)?;
             run.finish()?;
         }
-        let num_vertices = self.counts().first().copied().unwrap_or(0);
-        let mut run = output.numbers(SectionKind::LowerOffsets, num_vertices);
-        run.push(num_edges as u64)?;
+        let counts = self.counts();
+        let mut run = output.numbers(SectionKind::LowerOffsets, counts.first().copied().unwrap_or(0));
+        run.push(counts.get(1).copied().unwrap_or(0) as u64)?;
         run.finish()
     }
+}
+
+/// The sections that are in memory.
+fn known_sections<'a>(
+    labels: &'a EncodedLabels<'_>,
+    coordinates: Option<&'a Coordinates>,
+    provenance: Option<&'a str>,
+) -> Vec<Section<'a>> {
+    let mut known = match labels {
+        EncodedLabels::Numbered => Vec::new(),
+        EncodedLabels::Integers(labels) => vec![Section::new(SectionKind::IntegerLabels, Column::U64(labels))],
+        EncodedLabels::Text { offsets, text } => vec![
+            Section::new(SectionKind::LabelOffsets, Column::U64(offsets)),
+            Section::new(SectionKind::LabelText, Column::U8(text.as_bytes())),
+        ],
+    };
+    if let Some((components, column)) = coordinates.map(coordinate_column) {
+        known.push(Section { components, ..Section::new(SectionKind::Coordinates, column) });
+    }
+    if let Some(provenance) = provenance {
+        known.push(Section::new(SectionKind::Provenance, Column::U8(provenance.as_bytes())));
+    }
+    known
 }
 
 fn bytes(width: IndexWidth) -> usize {
