@@ -11,6 +11,7 @@ mod arena;
 mod check;
 mod lists;
 mod operators;
+mod refine;
 mod simplices;
 mod text;
 
