@@ -161,6 +161,13 @@ impl PackedArc {
         CellId(self.0 >> Self::CODE_BITS)
     }
 
+    /// The same incidence with another neighbour: seen from the other end, the arc to the cell that this one belongs to.
+    #[must_use]
+    #[inline]
+    pub const fn towards(self, cell: CellId) -> Self {
+        Self(cell.number() << Self::CODE_BITS | self.0 & Self::ELSEWHERE)
+    }
+
     /// The incidence, unless it stands elsewhere.
     #[must_use]
     #[inline]

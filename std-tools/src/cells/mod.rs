@@ -13,6 +13,7 @@ mod cycles;
 mod gaps;
 mod lists;
 mod operators;
+mod refine;
 mod simplices;
 mod text;
 

@@ -416,7 +416,7 @@ impl CellComplex {
     }
 
     /// Changes the incidence of two cells that are incident.
-    fn set_incidence(&mut self, low: CellId, high: CellId, incidence: Incidence) {
+    pub(super) fn set_incidence(&mut self, low: CellId, high: CellId, incidence: Incidence) {
         let mut was_elsewhere = false;
         for (cell, side, other) in [(high, Side::Boundary, low), (low, Side::Coboundary, high)] {
             let list = self.cells[cell.index()].list_mut(side, &mut self.arena);

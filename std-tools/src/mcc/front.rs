@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use sig_core::mcc::{AxisBox, Mcc, RefinementView};
-use sig_core::{CellId, mark_words};
+use sig_core::{CellId, PackedArc, mark_words};
 
 use super::record::MultiResolution;
 use crate::build::narrow;
@@ -26,7 +26,9 @@ pub struct Front<'a> {
     wanted: Vec<u32>,
     /// For each refinement, how many arcs of others that are applied lead to its cells, and one more if it is wanted.
     uses: Vec<u32>,
+    /// Memory that operators use again.
     refinement: Refinement,
+    room: Vec<PackedArc>,
 }
 
 /// What moving a front did.
@@ -71,7 +73,8 @@ impl<'a> Front<'a> {
     pub fn new(mcc: Mcc<'a>) -> Self {
         let marks = vec![0; mark_words(mcc.num_refinements())];
         let (wanted, uses) = (marks.clone(), vec![0; mcc.num_refinements()]);
-        Self { mcc, complex: base(&mcc), applied: marks, wanted, uses, refinement: Refinement::default() }
+        let (refinement, room) = (Refinement::default(), Vec::new());
+        Self { mcc, complex: base(&mcc), applied: marks, wanted, uses, refinement, room }
     }
 
     /// The complex.
@@ -235,8 +238,7 @@ impl<'a> Front<'a> {
     fn refine(&mut self, number: usize) -> Result<(), BadRefinement> {
         let bad = |error| BadRefinement { refinement: number, error };
         let view = self.mcc.refinement(number).ok_or(bad(Infeasible::NoSuchCell(CellId::new(0))))?;
-        copy(view, &mut self.refinement);
-        self.complex.make(&self.refinement).map_err(bad)
+        self.complex.refine(&view, &mut self.room).map_err(bad)
     }
 
     /// Takes a refinement back, on which no other one that is applied depends.
@@ -282,12 +284,6 @@ impl<'a> Front<'a> {
     pub fn to_complex(&self) -> MultiResolution {
         MultiResolution::of_complex(&self.complex, |cell| narrow(self.mcc.origin(cell).unwrap_or(0)))
     }
-}
-
-/// A refinement of a file in memory that is used again.
-fn copy(view: RefinementView<'_>, refinement: &mut Refinement) {
-    refinement.reset(view.low, view.high, view.dim, view.sign);
-    view.lists.into_iter().enumerate().for_each(|(part, list)| refinement.extend(part, list));
 }
 
 /// The base complex of a multi-resolution complex, with room for all cells.
