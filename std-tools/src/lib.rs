@@ -34,6 +34,7 @@
 //! | Betti numbers and torsion | [`mod@homology`] | [`homology::homology`](homology::homology()) |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
+//! | where a complex is no manifold | [`singularities`] | [`singularities::Singularities`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
 //! | top simplices with orientations | [`tops`] | [`tops::top_simplices`] |
 //! | write meshes, lists, GUDHI's text | [`export`] | [`export::export`](export::export()) |
@@ -77,6 +78,7 @@ pub mod names;
 pub mod points;
 pub mod proximity;
 pub mod simplex_tree;
+pub mod singularities;
 pub mod soup;
 pub mod spool;
 pub mod store;
