@@ -21,6 +21,7 @@
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | structures to compare the SIG with | [`baselines`] | [`baselines::Structure`] |
 //! | the SIG beside them on one complex | [`mod@compare`] | [`compare::compare`] |
+//! | pictures as SVG and PNG | [`draw`] | [`draw::Scene`], [`draw::complex::scene`] |
 //! | charts as SVG | [`chart`] | [`chart::Chart`], [`chart::draw_bars`] |
 //! | cliques of a graph to a simplex tree | [`mod@flag`] | [`flag::expand`], [`flag::estimate`] |
 //! | landmarks and witnesses to a simplex tree | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
@@ -65,6 +66,7 @@ pub mod combinatorial_map;
 pub mod compare;
 pub mod contract;
 pub mod distances;
+pub mod draw;
 pub mod export;
 pub mod flag;
 pub mod frozen;
