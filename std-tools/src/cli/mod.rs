@@ -25,6 +25,7 @@ mod mcc_input;
 mod output;
 mod progress;
 mod query;
+mod report;
 mod rips;
 mod simplify;
 mod tree;
