@@ -9,7 +9,7 @@ use super::front::{BadRefinement, Front};
 use crate::build::narrow;
 use crate::cells::CellComplex;
 use crate::draw::colour;
-use crate::draw::{Dot, Face, Line, Scene, Swatch};
+use crate::draw::{Dot, Face, Line, Scene, Swatch, grouped};
 use crate::export::vtu;
 
 /// A cell of a front by its number in the full complex, and its dimension.
@@ -146,7 +146,7 @@ impl Drawing {
         let mut cells: Vec<Option<FrontCell>> = self.simplices.iter().map(|&(_, cell)| cell).collect();
         cells.sort_unstable();
         cells.dedup();
-        let text = format!("{} cells of the front in {} top simplices", cells.len(), self.simplices.len());
+        let text = format!("{} cells of the front in {} top simplices", grouped(cells.len()), grouped(self.simplices.len()));
         scene.legend.push(Swatch::None, colour::INK, text);
         scene
     }

@@ -137,9 +137,10 @@ fn pixels_have_the_colours_of_what_is_nearest() {
 fn groups_have_lines_between_them() {
     let mut scene = square();
     scene.faces[1].group = 1;
-    let (pixels, ..) = pixels(&scene, SIZE);
-    let darkest = (0..SIZE * SIZE).map(|pixel| pixels[pixel * 3]).min();
-    assert!(darkest < Some(100), "a line on the diagonal: {darkest:?}");
+    let (pixels, ..) = pixels(&scene, 1000);
+    let dark = pixels.chunks_exact(3).filter(|pixel| pixel[0] < 100).count();
+    // A pixel or two in each row that has the diagonal.
+    assert!((900..2000).contains(&dark), "{dark} pixels");
 }
 
 #[test]
