@@ -5,6 +5,8 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
+use crate::draw::colour::SERIES;
+
 /// One line of a chart.
 #[derive(Clone, Debug)]
 pub struct Series {
@@ -37,15 +39,10 @@ pub struct Chart<'a> {
     pub series: &'a [Series],
 }
 
-/// Colours that differ for colour-blind readers too (Okabe and Ito).
-const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-];
+/// The colours of the series, over and over.
+fn colours() -> impl Iterator<Item = RGBColor> {
+    SERIES.into_iter().map(|[red, green, blue]| RGBColor(red, green, blue)).cycle()
+}
 
 impl Chart<'_> {
     /// Draws the chart into a file.
@@ -90,7 +87,7 @@ impl Chart<'_> {
         X: Ranged<ValueType = f64>,
         Y: Ranged<ValueType = f64>,
     {
-        for (series, colour) in self.series.iter().zip(COLOURS.iter().cycle()) {
+        for (series, colour) in self.series.iter().zip(colours()) {
             let style = colour.stroke_width(2);
             chart
                 .draw_series(LineSeries::new(series.points.iter().copied(), style))?
@@ -144,14 +141,17 @@ pub type Bar = Option<(f64, String)>;
 pub fn draw_bars(title: &str, panels: &[Bars]) -> Result<String, Box<dyn Error + Send + Sync>> {
     const PANEL: u32 = 300;
     let rows = u32::try_from(panels.len())?;
+    // A title and a legend, if there are any.
+    let is_bare = title.is_empty() && panels.first().is_none_or(|panel| panel.series.len() < 2);
+    let head = if is_bare { 8 } else { 64 };
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (1000, 64 + PANEL * rows)).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, (1000, head + PANEL * rows)).into_drawing_area();
         root.fill(&WHITE).map_err(|error| error.to_string())?;
         root.draw(&Text::new(title.to_owned(), (16, 14), ("sans-serif", 20))).map_err(|error| error.to_string())?;
-        if let Some(first) = panels.first() {
+        if let Some(first) = panels.first().filter(|_| !is_bare) {
             let mut x = 16;
-            for (name, colour) in first.series.iter().zip(COLOURS.iter().cycle()) {
+            for (name, colour) in first.series.iter().zip(colours()) {
                 root.draw(&Rectangle::new([(x, 44), (x + 12, 56)], colour.filled()))
                     .map_err(|error| error.to_string())?;
                 root.draw(&Text::new(name.clone(), (x + 18, 43), ("sans-serif", 14)))
@@ -159,7 +159,7 @@ pub fn draw_bars(title: &str, panels: &[Bars]) -> Result<String, Box<dyn Error +
                 x += 40 + 9 * i32::try_from(name.chars().count())?;
             }
         }
-        let (_, below) = root.split_vertically(64);
+        let (_, below) = root.split_vertically(head);
         for (area, panel) in below.split_evenly((panels.len(), 1)).iter().zip(panels) {
             panel.draw(area)?;
         }
@@ -210,7 +210,7 @@ impl Bars {
         let width = 0.86 / self.series.len().max(1) as f64;
         for (group, (name, values)) in self.groups.iter().enumerate() {
             let (mut x, middle) = (group as f64 + 0.07, group as f64 + 0.5);
-            for (value, colour) in values.iter().zip(COLOURS.iter().cycle()) {
+            for (value, colour) in values.iter().zip(colours()) {
                 if let Some((value, label)) = value {
                     let (low, high) = (place(x + width * 0.05, floor), place(x + width * 0.95, value.max(floor)));
                     area.draw(&Rectangle::new([low, high], colour.filled())).map_err(|error| error.to_string())?;

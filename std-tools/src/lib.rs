@@ -21,6 +21,7 @@
 //! | the same by the paper's Algorithms 1 to 3 | [`incidence_graph`] | [`incidence_graph::IncidenceGraph`] |
 //! | structures to compare the SIG with | [`baselines`] | [`baselines::Structure`] |
 //! | the SIG beside them on one complex | [`mod@compare`] | [`compare::compare`] |
+//! | pictures as SVG and PNG | [`draw`] | [`draw::Scene`], [`draw::complex::scene`] |
 //! | charts as SVG | [`chart`] | [`chart::Chart`], [`chart::draw_bars`] |
 //! | cliques of a graph to a simplex tree | [`mod@flag`] | [`flag::expand`], [`flag::estimate`] |
 //! | landmarks and witnesses to a simplex tree | [`witness`] | [`witness::witness_complex`](witness::witness_complex()) |
@@ -34,6 +35,7 @@
 //! | Betti numbers and torsion | [`mod@homology`] | [`homology::homology`](homology::homology()) |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
+//! | where a complex is no manifold | [`singularities`] | [`singularities::Singularities`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
 //! | top simplices with orientations | [`tops`] | [`tops::top_simplices`] |
 //! | write meshes, lists, GUDHI's text | [`export`] | [`export::export`](export::export()) |
@@ -64,6 +66,7 @@ pub mod combinatorial_map;
 pub mod compare;
 pub mod contract;
 pub mod distances;
+pub mod draw;
 pub mod export;
 pub mod flag;
 pub mod frozen;
@@ -77,6 +80,7 @@ pub mod names;
 pub mod points;
 pub mod proximity;
 pub mod simplex_tree;
+pub mod singularities;
 pub mod soup;
 pub mod spool;
 pub mod store;

@@ -7,9 +7,11 @@ use clap::ValueEnum;
 use serde::Serialize;
 use sig_core::mcc::{AxisBox, Mcc};
 use sig_tools::cells::write_cells;
-use sig_tools::mcc::{Drawing, Front, ViewAxis, write_mcc};
+use sig_tools::draw::{Axis, Camera, PictureOptions};
+use sig_tools::mcc::{Drawing, Front, write_mcc};
 use sig_tools::soup::{Coordinates, Scalars};
 
+use super::draw::{self, Kind};
 use super::output::{self, Content, Target, grouped};
 use super::{UsageError, mcc_input, simplify};
 
@@ -176,16 +178,19 @@ impl Args {
         if !output::is_stdout(path) {
             output::log(format_args!("wrote  {}", path.display()));
         }
+        let Some(drawing) = drawing.filter(|_| self.svg.is_some() || self.png.is_some()) else { return Ok(()) };
         let axis = match self.view {
-            AxisName::X => ViewAxis::X,
-            AxisName::Y => ViewAxis::Y,
-            AxisName::Z => ViewAxis::Z,
+            AxisName::X => Axis::X,
+            AxisName::Y => Axis::Y,
+            AxisName::Z => Axis::Z,
         };
-        if let (Some(path), Some(drawing)) = (&self.svg, &drawing) {
-            output::to_path(path, existing, |out| drawing.write_svg(axis, self.size, out))?;
+        let (scene, camera) = (drawing.scene(), Camera::along(axis, false));
+        let options = PictureOptions { size: self.size.into(), ..PictureOptions::default() };
+        if let Some(path) = &self.svg {
+            draw::write(&scene, &camera, &options, Kind::Svg, path, existing)?;
         }
-        if let (Some(path), Some(drawing)) = (&self.png, &drawing) {
-            output::to_path(path, existing, |out| drawing.write_png(axis, self.size, out))?;
+        if let Some(path) = &self.png {
+            draw::write(&scene, &camera, &options, Kind::Png, path, existing)?;
         }
         Ok(())
     }

@@ -171,7 +171,7 @@ impl Serialize for Factor {
 }
 
 /// What was read.
-enum Source {
+pub(super) enum Source {
     Simplicial(Input),
     Cells(CellComplex),
 }
@@ -286,7 +286,7 @@ fn group(over: Ring, betti: usize, torsion: &[BigInt]) -> String {
 }
 
 /// Opens a complex in any of its forms.
-fn open(path: &Path, how: &How, format: Option<Format>) -> anyhow::Result<Source> {
+pub(super) fn open(path: &Path, how: &How, format: Option<Format>) -> anyhow::Result<Source> {
     if mcc_input::is_one(path) {
         let file = mcc_input::open(path)?;
         // Every front has the same homology, and the base complex is the smallest.

@@ -3,18 +3,23 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use serde::Serialize;
 use sig_core::complex::columns::Labels;
 use sig_core::format::{Column, Container, SectionKind};
 use sig_core::storage::{ClusterCounts, FileStorage, PaperStorage};
 use sig_core::{Complex, Dim, Index, Relations, with_complex, with_tree};
-use sig_tools::View;
 use sig_tools::analysis::{Analysis, num_top_simplices};
 use sig_tools::store::Access;
+use sig_tools::store::atomic::Existing;
+use sig_tools::{View, with_view};
 
-use super::input::How;
+use super::draw::whole;
+use super::input::{How, Input};
 use super::output::{self, grouped, table};
-use super::{extract, mcc_input, progress};
+use super::report::{self, Page};
+use super::tree_input::displayed;
+use super::{UsageError, extract, mcc_input, progress};
 
 /// Show what is in a file: simplices, clusters, components, storage
 #[derive(clap::Args)]
@@ -23,6 +28,7 @@ Examples:
   sig info bunny.sigc
   sig info bunny.mcc                   base complex, refinements, dependencies
   sig info rips.sigc --tops            the top simplices of a tree, too
+  sig info bunny.sigc --html bunny.html    a page with charts and a picture
   sig info bunny.sigc --json | jq .euler_characteristic")]
 pub(super) struct Args {
     /// The file; `-` is standard input
@@ -35,6 +41,14 @@ pub(super) struct Args {
     #[arg(long)]
     tops: bool,
 
+    /// Write a page to a file, too: counts, histograms of clusters and degrees, storage, singularities, and a picture
+    #[arg(long, value_name = "OUT")]
+    html: Option<PathBuf>,
+
+    /// Replace the file of --html if it exists
+    #[arg(long, requires = "html")]
+    force: bool,
+
     /// Print a JSON object
     #[arg(long)]
     json: bool,
@@ -42,7 +56,18 @@ pub(super) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
+        let existing = if self.force { Existing::Replace } else { Existing::Refuse };
+        if let Some(page) = &self.html {
+            if output::is_stdout(page) {
+                return Err(UsageError("--html wants a file, for standard output has the summary".to_owned()).into());
+            }
+            output::check(page, existing, std::slice::from_ref(&self.file))?;
+        }
         if mcc_input::is_one(&self.file) {
+            if self.html.is_some() {
+                let message = format!("{}: --html is for simplicial complexes", self.file.display());
+                return Err(UsageError(message).into());
+            }
             return extract::info(&self.file, self.json);
         }
         let input = self.how.open(&self.file, Access::Sequential)?;
@@ -57,6 +82,10 @@ impl Args {
             output::json(&summary)?;
         } else {
             output::stdout(|out| summary.print(&self.file, out))?;
+        }
+        if let Some(path) = &self.html {
+            let page = progress::during("drawing", || summary.page(input, &self.file))?;
+            output::to_path(path, existing, |out| out.write_all(page.as_bytes()))?;
         }
         Ok(())
     }
@@ -165,6 +194,18 @@ impl Storage {
         }
     }
 
+    /// The integers of the file and of the formulas, by their names.
+    fn bars(&self) -> Vec<(String, usize)> {
+        let formula = if self.pairs { "paper, 7.4" } else { "paper, 4.2" };
+        let bars = [
+            ("this file", self.file_integers),
+            (formula, self.paper_integers),
+            ("4.2, no flags", self.paper_general_integers),
+            ("incidence graph", self.incidence_graph_integers),
+        ];
+        bars.map(|(name, count)| (name.to_owned(), count)).to_vec()
+    }
+
     /// The integers and bits of the paper beside those of the file, as parts of the incidence graph's.
     fn rows(&self) -> Vec<Vec<String>> {
         let row = |name: &str, integers: usize, bits: usize| {
@@ -266,6 +307,46 @@ impl Summary {
             writeln!(out)?;
         }
         table(&self.byte_rows(), out)
+    }
+
+    /// The summary with charts and a picture as a page.
+    fn page(&self, input: Input, file: &Path) -> anyhow::Result<String> {
+        let name = displayed(file);
+        with_view!(input.view(), complex => complex.validate())
+            .with_context(|| format!("{name}: damaged; see sig verify"))?;
+        let mut page = Page::new(&name);
+        let kind = if self.kind.is_some() { "simplex tree" } else { "Simplified Incidence Graph" };
+        page.paragraph(&format!("{kind}, {} bytes, {}-bit indices", grouped(self.file_bytes), self.index_bits));
+        if self.dimension < 0 {
+            page.paragraph("The empty complex, of dimension −1.");
+            return Ok(page.finish());
+        }
+        let degrees = with_view!(input.view(), complex => report::degrees(&complex));
+        let clusters = match input.view() {
+            View::Complex(any) => with_complex!(any, complex => report::clusters(&complex)),
+            View::Tree(_) => Vec::new(),
+        };
+        page.table(&self.simplex_rows(), true);
+        if let View::Complex(any) = whole(input, &name)?.view() {
+            with_complex!(any, complex => page.complex(&complex, file))?;
+        }
+        page.heading("Facts");
+        page.table(&self.fact_rows(), false);
+        page.heading("Storage");
+        if let Some(storage) = &self.storage {
+            page.table(&storage.rows(), true);
+            page.chart("", vec![("integers".to_owned(), storage.bars())])?;
+        }
+        page.table(&self.byte_rows(), true);
+        page.heading("Clusters and degrees");
+        let simplices = self.simplices.iter().enumerate().map(|(dim, &count)| (dim.to_string(), count)).collect();
+        let mut panels = vec![
+            ("simplices, by dimension".to_owned(), simplices),
+            ("vertices, by the number of their edges".to_owned(), degrees),
+        ];
+        panels.extend(clusters);
+        page.chart("", panels)?;
+        Ok(page.finish())
     }
 
     /// A row for each dimension: how many simplices; of a SIG, top ones, κ_p^g, flagged ones.

@@ -10,6 +10,7 @@ mod compare;
 mod completions;
 mod contract;
 mod convert;
+mod draw;
 mod expand;
 mod expansion;
 mod export;
@@ -26,6 +27,7 @@ mod mcc_input;
 mod output;
 mod progress;
 mod query;
+mod report;
 mod rips;
 mod simplify;
 mod tree;
@@ -59,6 +61,7 @@ Examples:
   sig extract bunny.mcc -o b.vtu --count 500  a complex of it, as coarse as one likes
   sig info bunny.sigc                   what is in it
   sig query bunny.sigc star 0,17        the star of the edge between vertices 0 and 17
+  sig draw bunny.sigc -o bunny.png      a picture of it
   sig compare bunny.sigc                beside other structures: space, building, relations
   sig homology bunny.sigc               components, tunnels, voids, torsion
   sig verify bunny.sigc                 whether it is whole and right
@@ -82,6 +85,7 @@ enum Command {
     Info(info::Args),
     Homology(homology::Args),
     Query(query::Args),
+    Draw(draw::Args),
     Tree(tree::Args),
     Compare(compare::Args),
     Verify(verify::Args),
@@ -107,6 +111,7 @@ impl Command {
             Self::Info(args) => args.run(),
             Self::Homology(args) => args.run(),
             Self::Query(args) => args.run(),
+            Self::Draw(args) => args.run(),
             Self::Tree(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Verify(args) => args.run(),

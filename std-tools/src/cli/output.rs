@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::Path;
 
 use serde::Serialize;
+pub(super) use sig_tools::draw::grouped;
 use sig_tools::store::atomic::{self, Existing};
 
 use super::UsageError;
@@ -132,20 +133,6 @@ pub(super) fn counted<N: Copy + Display + std::iter::Sum>(simplices: &[N]) -> St
     format!("{} simplices{counts}", grouped(simplices.iter().copied().sum::<N>()))
 }
 
-/// A number with its digits in groups of three.
-pub(super) fn grouped(number: impl Display) -> String {
-    let digits = number.to_string();
-    let (sign, digits) = digits.strip_prefix('-').map_or(("", digits.as_str()), |digits| ("-", digits));
-    let mut grouped = sign.to_owned();
-    for (position, digit) in digits.char_indices() {
-        if position > 0 && (digits.len() - position) % 3 == 0 {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
-}
-
 /// Writes rows as a table: the first column to the left, the others to the right, two blanks between.
 pub(super) fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -167,15 +154,7 @@ pub(super) fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()>
 
 #[cfg(test)]
 mod tests {
-    use super::{grouped, table};
-
-    #[test]
-    fn digits_are_grouped_from_the_right() {
-        let numbers = [(0, "0"), (999, "999"), (1000, "1,000"), (-1_234_567, "-1,234,567"), (-123, "-123")];
-        for (number, text) in numbers {
-            assert_eq!(grouped(number), text);
-        }
-    }
+    use super::table;
 
     #[test]
     fn columns_are_as_wide_as_their_widest_cell() {

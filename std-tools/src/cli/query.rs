@@ -1,7 +1,7 @@
 //! `sig query`: one relation of one simplex.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::ValueEnum;
@@ -39,6 +39,17 @@ pub(super) struct Args {
     #[command(flatten)]
     how: How,
 
+    #[command(flatten)]
+    question: Question,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A relation of a simplex that is asked for.
+#[derive(Clone, clap::Args)]
+pub(super) struct Question {
     /// The relation
     relation: Relation,
 
@@ -50,10 +61,6 @@ pub(super) struct Args {
     /// faces for `adjacent` (one less than that of the simplex by default)
     #[arg(long, value_name = "Q")]
     dim: Option<Dim>,
-
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -88,46 +95,30 @@ struct Cluster {
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
-        let labels: Vec<&str> = self.simplex.split(',').map(str::trim).collect();
-        if labels.contains(&"") {
-            let message = format!("'{}' is no simplex: give the labels of its vertices, as in 0,17", self.simplex);
-            return Err(UsageError(message).into());
-        }
+        let question = &self.question;
+        // Before the file is looked for.
+        question.labels()?;
         let input = self.how.open(&self.file, Access::Random)?;
-        match (input.view(), self.relation) {
-            (View::Complex(any), Relation::Clusters) => {
-                with_complex!(any, complex => self.answer_clusters(&complex, &labels))
-            }
+        match (input.view(), question.relation) {
+            (View::Complex(any), Relation::Clusters) => with_complex!(any, complex => self.answer_clusters(&complex)),
             (View::Tree(_), Relation::Clusters) => {
                 let file = self.file.display();
                 Err(FormatError::MissingSection(SectionKind::Lists)).with_context(|| {
                     format!("{file}: a tree has no clusters; sig tree convert {file} -o OUT --kind sig computes them")
                 })
             }
-            (view, _) => with_view!(view, complex => self.answer(&complex, &labels)),
+            (view, _) => with_view!(view, complex => self.answer(&complex)),
         }
     }
 
-    fn simplex(&self, complex: &impl Relations, labels: &[&str]) -> anyhow::Result<SimplexId> {
-        let simplex = find_simplex(complex, labels).map_err(|error| match error {
-            FindError::RepeatedVertex { .. } => UsageError(error.to_string()).into(),
-            error => anyhow::Error::new(error).context(self.file.display().to_string()),
-        })?;
-        self.check_dim(complex, simplex)?;
-        Ok(simplex)
-    }
-
-    fn answer_clusters<I: Index>(&self, complex: &Complex<'_, I>, labels: &[&str]) -> anyhow::Result<()> {
-        let simplex = self.simplex(complex, labels)?;
+    fn answer_clusters<I: Index>(&self, complex: &Complex<'_, I>) -> anyhow::Result<()> {
+        let simplex = self.question.simplex(complex, &self.file)?;
         let clusters = clusters(complex, simplex, &mut OwnedScratch::new(complex));
         Ok(if self.json { output::json(&clusters) } else { print_clusters(&clusters) }?)
     }
 
-    fn answer<V: Relations>(&self, complex: &V, labels: &[&str]) -> anyhow::Result<()> {
-        let simplex = self.simplex(complex, labels)?;
-        let mut memory = OwnedScratch::new(complex);
-        let mut found = self.find(complex, simplex, &mut memory);
-        found.sort_unstable();
+    fn answer<V: Relations>(&self, complex: &V) -> anyhow::Result<()> {
+        let found = self.question.answer(complex, &self.file)?;
         if self.json {
             let found: Vec<_> = found.into_iter().map(|simplex| simplex_labels(complex, simplex)).collect();
             output::json(&found)?;
@@ -137,6 +128,34 @@ impl Args {
             })?;
         }
         Ok(())
+    }
+}
+
+impl Question {
+    fn labels(&self) -> Result<Vec<&str>, UsageError> {
+        let labels: Vec<&str> = self.simplex.split(',').map(str::trim).collect();
+        if labels.contains(&"") {
+            let message = format!("'{}' is no simplex: give the labels of its vertices, as in 0,17", self.simplex);
+            return Err(UsageError(message));
+        }
+        Ok(labels)
+    }
+
+    /// The simplices that the relation has in a complex, that of a file, by increasing id.
+    pub(super) fn answer<V: Relations>(&self, complex: &V, file: &Path) -> anyhow::Result<Vec<SimplexId>> {
+        let simplex = self.simplex(complex, file)?;
+        let mut found = self.find(complex, simplex, &mut OwnedScratch::new(complex));
+        found.sort_unstable();
+        Ok(found)
+    }
+
+    fn simplex(&self, complex: &impl Relations, file: &Path) -> anyhow::Result<SimplexId> {
+        let simplex = find_simplex(complex, &self.labels()?).map_err(|error| match error {
+            FindError::RepeatedVertex { .. } => UsageError(error.to_string()).into(),
+            error => anyhow::Error::new(error).context(file.display().to_string()),
+        })?;
+        self.check_dim(complex, simplex)?;
+        Ok(simplex)
     }
 
     /// Refuses a dimension where there is none to choose, or that the relation cannot have.

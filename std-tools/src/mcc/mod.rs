@@ -32,7 +32,7 @@ mod verify;
 
 pub use criterion::{Criterion, Extent, Field, Free, Length, Pair};
 pub use front::{BadRefinement, Front, Moved, apply_in_order, members};
-pub use picture::{DrawError, Drawing, ViewAxis};
+pub use picture::{DrawError, Drawing};
 pub use record::MultiResolution;
 pub use simplify::{Precision, SimplifyOptions, SimplifyReport, Strategy, Types, simplify};
 pub use store::{MccFile, write_mcc};

@@ -3,13 +3,13 @@
 
 use std::io::{self, Write};
 
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
 use sig_core::{CellId, Dim};
 
 use super::front::{BadRefinement, Front};
 use crate::build::narrow;
 use crate::cells::CellComplex;
+use crate::draw::colour;
+use crate::draw::{Dot, Face, Line, Scene, Swatch, grouped};
 use crate::export::vtu;
 
 /// A cell of a front by its number in the full complex, and its dimension.
@@ -40,18 +40,6 @@ pub enum DrawError {
     /// The full complex cannot be made.
     #[error(transparent)]
     Refinement(#[from] BadRefinement),
-}
-
-/// Along which axis a picture looks.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub enum ViewAxis {
-    /// From large x to small x.
-    X,
-    /// From large y to small y.
-    Y,
-    /// From large z to small z.
-    #[default]
-    Z,
 }
 
 impl Drawing {
@@ -136,66 +124,32 @@ impl Drawing {
         writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
 
-    /// Writes a picture in PNG: parallel projection, the nearer triangle hides the farther one, with lines between cells of the
-    /// front. `size` is the longer side in pixels.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write_png(&self, axis: ViewAxis, size: u16, out: &mut dyn Write) -> io::Result<()> {
-        let view = Projection::new(&self.points, axis, f64::from(size));
-        let (width, height) = (view.width(), view.height());
-        let mut pixels: Vec<Option<Pixel>> = vec![None; width * height];
-        for &(triangle, cell) in &self.triangles {
-            let corners = triangle.map(|corner| view.project(self.points[corner as usize]));
-            let pixel = |depth| Pixel { depth, cell, shade: shade(corners) };
-            fill(corners, width, height, |at, depth| {
-                let old = &mut pixels[at];
-                if old.as_ref().is_none_or(|old| old.depth < depth) {
-                    *old = Some(pixel(depth));
-                }
-            });
-        }
-        let mut rows = Vec::with_capacity(height * (3 * width + 1));
-        for row in 0..height {
-            rows.push(0);
-            for column in 0..width {
-                let at = row * width + column;
-                let here = pixels[at].as_ref();
-                let is_line = |other: usize| {
-                    here.zip(pixels[other].as_ref()).is_some_and(|(here, other)| here.cell != other.cell)
-                };
-                let is_line = column + 1 < width && is_line(at + 1) || row + 1 < height && is_line(at + width);
-                rows.extend(here.map_or([255; 3], |pixel| {
-                    let [r, g, b] = colour(pixel.cell, pixel.shade);
-                    if is_line { [r / 4, g / 4, b / 4] } else { [r, g, b] }
-                }));
+    /// The front as a scene: the triangles of no solid, and of one; wire edges, and vertices by themselves. Each has a colour by
+    /// the cell of the front, and there are lines between the triangles of different cells.
+    #[must_use]
+    pub fn scene(&self) -> Scene {
+        let mut scene = Scene { points: self.points.clone(), groups: true, ..Scene::default() };
+        scene.flat = scene.points.iter().all(|point| point[2] == 0.0);
+        let face = |&(corners, cell): &([u32; 3], Option<u32>)| {
+            let group = cell.map_or(0, |cell| cell + 1);
+            Face { corners, colour: colour::of_number(cell), group, is_mark: false }
+        };
+        scene.faces = self.triangles.iter().map(face).collect();
+        for (corners, cell) in &self.simplices {
+            let (colour, is_mark) = (colour::of_number(cell.map(|(cell, _)| cell)), false);
+            match corners[..] {
+                [a, b] => scene.lines.push(Line { ends: [a, b], colour, radius: 2.2, is_mark }),
+                [at] => scene.dots.push(Dot { at, colour, radius: 4.0, is_mark }),
+                _ => {}
             }
         }
-        write_png(width, height, &rows, out)
-    }
-
-    /// Writes a picture in SVG: the triangles that face the viewer, the farthest first. `size` is the longer side.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write_svg(&self, axis: ViewAxis, size: u16, out: &mut dyn Write) -> io::Result<()> {
-        let view = Projection::new(&self.points, axis, f64::from(size));
-        let mut triangles: Vec<_> = self
-            .triangles
-            .iter()
-            .map(|&(triangle, cell)| (triangle.map(|corner| view.project(self.points[corner as usize])), cell))
-            .collect();
-        let depth = |corners: &[[f64; 3]; 3]| corners.iter().map(|corner| corner[2]).sum::<f64>();
-        triangles.sort_by(|(a, _), (b, _)| depth(a).total_cmp(&depth(b)));
-        let (width, height) = (view.width(), view.height());
-        writeln!(out, r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#)?;
-        for (corners, cell) in triangles {
-            let [r, g, b] = colour(cell, shade(corners));
-            let [a, b2, c] = corners.map(|[x, y, _]| format!("{x:.1},{y:.1}"));
-            let colour = format!("#{r:02x}{g:02x}{b:02x}");
-            writeln!(out, r#"<path d="M{a} {b2} {c}z" fill="{colour}" stroke="{colour}" stroke-width=".3"/>"#)?;
-        }
-        writeln!(out, "</svg>")
+        let mut cells: Vec<Option<FrontCell>> = self.simplices.iter().map(|&(_, cell)| cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let text =
+            format!("{} cells of the front in {} top simplices", grouped(cells.len()), grouped(self.simplices.len()));
+        scene.legend.push(Swatch::None, colour::INK, text);
+        scene
     }
 }
 
@@ -222,133 +176,4 @@ fn corners(complex: &CellComplex, cell: CellId, dim: Dim, origin: impl Fn(CellId
         faces.dedup();
     }
     (faces.len() == dim + 1 && dim <= 3).then(|| faces.into_iter().map(origin).collect())
-}
-
-/// A picture's coordinates: x to the right, y down, z to the viewer.
-struct Projection {
-    axes: [usize; 3],
-    low: [f64; 3],
-    high: [f64; 3],
-    scale: f64,
-}
-
-const MARGIN: f64 = 4.0;
-
-impl Projection {
-    fn new(points: &[[f64; 3]], axis: ViewAxis, size: f64) -> Self {
-        let axes = match axis {
-            ViewAxis::X => [1, 2, 0],
-            ViewAxis::Y => [2, 0, 1],
-            ViewAxis::Z => [0, 1, 2],
-        };
-        let edge = |pick: fn(f64, f64) -> f64| {
-            axes.map(|axis| points.iter().map(|point| point[axis]).reduce(pick).unwrap_or(0.0))
-        };
-        let (low, high) = (edge(f64::min), edge(f64::max));
-        let extent = (high[0] - low[0]).max(high[1] - low[1]);
-        let scale = if extent > 0.0 { (size - 2.0 * MARGIN).max(1.0) / extent } else { 1.0 };
-        Self { axes, low, high, scale }
-    }
-
-    fn side(&self, axis: usize) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most the size of the picture")]
-        let side = ((self.high[axis] - self.low[axis]) * self.scale + 2.0 * MARGIN).ceil() as usize;
-        side.max(1)
-    }
-
-    fn width(&self) -> usize {
-        self.side(0)
-    }
-
-    fn height(&self) -> usize {
-        self.side(1)
-    }
-
-    fn project(&self, point: [f64; 3]) -> [f64; 3] {
-        let [x, y, z] = self.axes.map(|axis| point[axis]);
-        let [x, y] = [x - self.low[0], self.high[1] - y].map(|value| value * self.scale + MARGIN);
-        [x, y, z * self.scale]
-    }
-}
-
-/// What a pixel shows.
-#[derive(Clone)]
-struct Pixel {
-    depth: f64,
-    cell: Option<u32>,
-    shade: f64,
-}
-
-/// Visits the pixels whose middles are in a triangle, with the depth there.
-fn fill([a, b, c]: [[f64; 3]; 3], width: usize, height: usize, mut visit: impl FnMut(usize, f64)) {
-    let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    if area == 0.0 {
-        return;
-    }
-    let range = |axis: usize, end: usize| {
-        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside the picture")]
-        let (low, high) = ((low - 0.5).ceil().max(0.0) as usize, (high - 0.5).floor().max(-1.0) + 1.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "inside the picture")]
-        let high = high as usize;
-        low..high.min(end)
-    };
-    for row in range(1, height) {
-        for column in range(0, width) {
-            let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-            let of_b = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) / area;
-            let of_c = ((b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1])) / area;
-            if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= 1.0 {
-                visit(row * width + column, a[2] + of_b * (b[2] - a[2]) + of_c * (c[2] - a[2]));
-            }
-        }
-    }
-}
-
-/// How bright a triangle is, by how it is turned to the viewer: 0.35 to 1.
-fn shade([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let [u, v]: [[f64; 3]; 2] = [b, c].map(|point| std::array::from_fn(|axis| point[axis] - a[axis]));
-    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    let length = normal.iter().map(|value| value * value).sum::<f64>().sqrt();
-    if length == 0.0 { 1.0 } else { 0.35 + 0.65 * (normal[2] / length).abs() }
-}
-
-/// A colour for each cell, near numbers far apart, as bright as told; grey for none.
-fn colour(cell: Option<u32>, shade: f64) -> [u8; 3] {
-    let hue = cell.map(|cell| f64::from(cell) * 0.618_033_988_749_895 % 1.0 * 6.0);
-    let channel = |offset: f64| {
-        let light = hue.map_or(0.6, |hue| {
-            let distance = ((hue + offset) % 6.0 - 3.0).abs() - 1.0;
-            0.35 + 0.65 * distance.clamp(0.0, 1.0)
-        });
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-        let byte = (light * shade * 255.0).round() as u8;
-        byte
-    };
-    [0.0, 4.0, 2.0].map(channel)
-}
-
-/// Writes rows of a filter byte and red, green and blue.
-fn write_png(width: usize, height: usize, rows: &[u8], out: &mut dyn Write) -> io::Result<()> {
-    out.write_all(b"\x89PNG\r\n\x1a\n")?;
-    let mut chunk = |kind: &[u8; 4], data: &[u8]| {
-        let mut hasher = crc32fast::Hasher::new();
-        hasher.update(kind);
-        hasher.update(data);
-        out.write_all(&narrow(data.len()).to_be_bytes())?;
-        out.write_all(kind)?;
-        out.write_all(data)?;
-        out.write_all(&hasher.finalize().to_be_bytes())
-    };
-    let mut header = Vec::new();
-    header.extend(narrow(width).to_be_bytes());
-    header.extend(narrow(height).to_be_bytes());
-    // Eight bits a channel, three channels.
-    header.extend([8, 2, 0, 0, 0]);
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(rows)?;
-    let data = encoder.finish()?;
-    chunk(b"IHDR", &header)?;
-    chunk(b"IDAT", &data)?;
-    chunk(b"IEND", &[])
 }

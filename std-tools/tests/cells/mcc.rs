@@ -9,7 +9,7 @@ use sig_core::mcc::Mcc;
 use sig_tools::cells::{CellComplex, read_cells};
 use sig_tools::mcc::{
     BadRefinement, Drawing, Extent, Field, Free, Front, Length, MccFile, MultiResolution, SimplifyOptions,
-    Strategy as Order, Types, ViewAxis, apply_in_order, members, simplify, write_mcc,
+    Strategy as Order, Types, apply_in_order, members, simplify, write_mcc,
 };
 use sig_tools::soup::{Coordinates, Scalars};
 use sig_tools::store::AlignedBytes;
@@ -290,14 +290,11 @@ fn fronts_are_drawn() {
     let mut front = Front::new(file.view());
     front.select(|refinement| refinement < 100).unwrap();
     let drawing = Drawing::new(&front).unwrap();
-    let (mut svg, mut png, mut vtu) = (Vec::new(), Vec::new(), Vec::new());
-    drawing.write_svg(ViewAxis::Z, 100, &mut svg).unwrap();
-    drawing.write_png(ViewAxis::X, 100, &mut png).unwrap();
-    drawing.write_vtu(&mut vtu).unwrap();
     // The surface of the cube has 6 · 9 · 2 triangles, and the grid 6 · 27 tetrahedra.
-    assert_eq!(String::from_utf8(svg).unwrap().matches("<path").count(), 108);
+    assert_eq!(drawing.scene().faces.len(), 108);
+    let mut vtu = Vec::new();
+    drawing.write_vtu(&mut vtu).unwrap();
     assert!(String::from_utf8(vtu).unwrap().contains(r#"NumberOfPoints="64" NumberOfCells="162""#));
-    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x64\0\0\0\x64\x08\x02"));
     // Without coordinates there is nothing to draw.
     assert!(Drawing::new(&Front::new(recorded.view())).is_err());
 }
