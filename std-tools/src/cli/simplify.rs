@@ -8,8 +8,8 @@ use serde::Serialize;
 use sig_core::Relations;
 use sig_tools::cells::{CellComplex, read_cells};
 use sig_tools::mcc::{
-    Criterion, Extent, Field, Free, Length, MultiResolution, Precision, SimplifyOptions, SimplifyReport,
-    Strategy, Types, simplify, write_mcc,
+    Criterion, Extent, Field, Free, Length, MultiResolution, Precision, SimplifyOptions, SimplifyReport, Strategy,
+    Types, simplify, write_mcc,
 };
 use sig_tools::soup::Coordinates;
 use sig_tools::with_view;
@@ -175,7 +175,9 @@ impl Args {
         for killed in killed(&report) {
             let Killed { dimensions: [low, high], first_type, second_type } = killed;
             let [first, second] = [first_type, second_type].map(grouped);
-            output::log(format_args!("       {low}- and {high}-cells: {first} of the first type, {second} of the second"));
+            output::log(format_args!(
+                "       {low}- and {high}-cells: {first} of the first type, {second} of the second"
+            ));
         }
         output::log(format_args!("made   a base of {}", counted(&report.base)));
         output::to_path(&self.target.output, self.target.existing(), |out| {

@@ -154,20 +154,21 @@ impl<C: Criterion + ?Sized> Work<'_, C> {
     pub(super) fn best(&self, pivot: CellId, instance: Instance) -> Option<(f32, Pair)> {
         let (first, second) = self.complex.one_or_two(pivot, instance)?;
         let one = self.candidate(pivot, instance, first, second);
-        let Some((second, other)) = second.and_then(|arc| {
-            self.candidate(pivot, instance, arc, Some(first)).map(|candidate| (arc, candidate))
-        }) else {
+        let Some((second, other)) =
+            second.and_then(|arc| self.candidate(pivot, instance, arc, Some(first)).map(|candidate| (arc, candidate)))
+        else {
             return one;
         };
         let Some(one) = one else { return Some(other) };
-        let is_better = other.0 < one.0 || other.0 == one.0 && {
-            // The other has the larger number.
-            let neighbours = |cell| match instance {
-                Instance::First => self.complex.num_coboundary(cell),
-                Instance::Second => self.complex.num_boundary(cell),
+        let is_better = other.0 < one.0
+            || other.0 == one.0 && {
+                // The other has the larger number.
+                let neighbours = |cell| match instance {
+                    Instance::First => self.complex.num_coboundary(cell),
+                    Instance::Second => self.complex.num_boundary(cell),
+                };
+                neighbours(second.cell) <= neighbours(first.cell)
             };
-            neighbours(second.cell) <= neighbours(first.cell)
-        };
         Some(if is_better { other } else { one })
     }
 
