@@ -394,8 +394,9 @@ pub(super) fn find(list: &[PackedArc], cell: CellId) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Arena, Header, Side};
+    use super::{Arena, Header, Side, gaps};
     use proptest::prelude::*;
+    use proptest::test_runner::TestCaseError;
     use sig_core::{Arc, CellId, Incidence, PackedArc};
     use std::collections::BTreeSet;
 
@@ -407,6 +408,21 @@ mod tests {
         /// Both lists of a cell behave as two sets.
         #[test]
         fn lists_are_sets(steps in proptest::collection::vec((any::<bool>(), any::<bool>(), proptest::collection::btree_set(0_u32..60, 0..8)), 0..40)) {
+            behave_as_sets(steps)?;
+        }
+
+        /// Long ones too.
+        #[test]
+        fn long_lists_are_sets(steps in proptest::collection::vec((any::<bool>(), 0_u8..3, 0_u32..3000, 1_u32..9, 0_u32..700), 0..30)) {
+            behave_as_sets(steps.into_iter().map(|(up, add, first, step, many)| {
+                (up, add > 0, (0..many).map(|number| first + step * number).collect())
+            }))?;
+        }
+    }
+
+    /// The steps: to which list, whether to add or to remove, which cells.
+    fn behave_as_sets(steps: impl IntoIterator<Item = (bool, bool, BTreeSet<u32>)>) -> Result<(), TestCaseError> {
+        {
             let mut arena = Arena::default();
             let mut header = Header::new(5, 0, &mut arena);
             let mut model = [BTreeSet::new(), BTreeSet::new()];
@@ -428,10 +444,12 @@ mod tests {
                 }
                 prop_assert_eq!(header.dim(), 5);
                 for (side, set) in [Side::Boundary, Side::Coboundary].into_iter().zip(&model) {
-                    let list: Vec<u32> = header.list(side, &arena).iter().map(|arc| arc.cell().number()).collect();
+                    let list: Vec<u32> = gaps::arcs(header.list(side, &arena)).map(|arc| arc.cell().number()).collect();
+                    prop_assert_eq!(header.len(side, &arena), set.len());
                     prop_assert_eq!(list, set.iter().copied().collect::<Vec<_>>());
                 }
             }
         }
+        Ok(())
     }
 }

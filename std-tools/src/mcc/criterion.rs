@@ -18,6 +18,27 @@ pub struct Pair {
 }
 
 /// What it costs to kill a pair: the least costs go first, and are the errors of the multi-resolution complex.
+///
+/// A criterion of one's own: vertices that are marked stay as long as other cells can go.
+///
+/// ```
+/// use sig_tools::cells::{CellComplex, read_cells};
+/// use sig_tools::mcc::{Criterion, Pair, SimplifyOptions, simplify};
+///
+/// struct Keep(Vec<bool>);
+///
+/// impl Criterion for Keep {
+///     fn cost(&self, _: &CellComplex, pair: Pair) -> f32 {
+///         if self.0.get(pair.low.index()).is_some_and(|&is_marked| is_marked) { 1.0 } else { 0.0 }
+///     }
+/// }
+///
+/// // A path of three vertices, of which the first stays, whatever goes.
+/// let path = read_cells(&b"cells 3 2\n+1 -0\n+2 -1\n"[..], "path")?;
+/// let (recorded, _) = simplify(path, &mut Keep(vec![true, false, false]), &SimplifyOptions::default());
+/// assert_eq!(recorded.view().origin(sig_core::CellId::new(0)), Some(0));
+/// # Ok::<(), sig_tools::io::ReadError>(())
+/// ```
 pub trait Criterion: Sync {
     /// The cost in a complex as it is: a number that is not negative; pairs of infinite cost are never killed.
     fn cost(&self, complex: &CellComplex, pair: Pair) -> f32;
@@ -27,7 +48,8 @@ pub trait Criterion: Sync {
         let _ = pair;
     }
 
-    /// Whether the cost of killing a cell by another never falls when others are killed. If so, fewer costs are computed.
+    /// Whether the cheapest pair of a cell never gets cheaper when others are killed, also where a neighbour is another one by
+    /// then. If so, fewer costs are computed.
     fn is_monotone(&self) -> bool {
         false
     }
@@ -207,10 +229,6 @@ impl Criterion for Field {
         let difference = (value(pair.low) - value(pair.high)).abs();
         // Two cells without vertices.
         if difference.is_nan() { 0.0 } else { difference }
-    }
-
-    fn is_monotone(&self) -> bool {
-        true
     }
 }
 

@@ -4,6 +4,7 @@
 #![allow(clippy::cast_possible_truncation)]
 
 mod betti;
+mod cycles;
 mod fronts;
 mod mcc;
 mod model;

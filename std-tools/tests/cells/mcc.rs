@@ -8,7 +8,7 @@ use sig_core::mark_words;
 use sig_core::mcc::Mcc;
 use sig_tools::cells::{CellComplex, read_cells};
 use sig_tools::mcc::{
-    BadRefinement, Drawing, Extent, Field, Free, Front, Length, MccFile, MultiResolution, SimplifyOptions,
+    BadRefinement, Drawing, Extent, Field, Free, Front, Length, MccFile, MultiResolution, Precision, SimplifyOptions,
     Strategy as Order, Types, apply_in_order, members, simplify, write_mcc,
 };
 use sig_tools::soup::{Coordinates, Scalars};
@@ -25,11 +25,12 @@ pub(crate) fn coordinates(vertices: usize) -> Coordinates {
     Coordinates { dim: 3, values: Scalars::F64(values) }
 }
 
-/// Simplifies by one of the criteria.
+/// Simplifies by one of the four criteria, in one of the four precisions.
 pub(crate) fn simplified(full: &CellComplex, which: usize, strategy: Order, types: Types) -> MultiResolution {
-    let options = SimplifyOptions { strategy, types, ..Default::default() };
+    let precision = [Precision::Two, Precision::Exact, Precision::Four, Precision::Sixteen][which / 4];
+    let options = SimplifyOptions { strategy, types, precision, ..Default::default() };
     let coordinates = coordinates(full.counts().first().copied().unwrap_or(0));
-    match which {
+    match which % 4 {
         0 => simplify(full.clone(), &mut Free, &options),
         1 => simplify(full.clone(), &mut Extent::new(full, &coordinates), &options),
         2 => simplify(full.clone(), &mut Length::new(full, &coordinates), &options),
@@ -97,7 +98,7 @@ proptest! {
     #[test]
     fn every_front_is_a_complex_of_the_same_homology(
         simplices in simplices(),
-        which in 0_usize..4,
+        which in 0_usize..16,
         batch in any::<bool>(),
         first_type in any::<bool>(),
         sets in prop::collection::vec((any::<u64>(), 0_u32..6), 4),
@@ -201,6 +202,41 @@ fn bases_are_small() {
     let ball = complex(kuhn_grid(4, 4, 4));
     // In three dimensions a greedy order may get stuck, as on a dunce hat; not often.
     assert!(simplified(&ball, 1, Order::Step, Types::Both).view().num_base_cells() <= 5);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same() {
+    let ball = complex(kuhn_grid(6, 6, 6));
+    for strategy in [Order::Step, Order::Batch] {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| simplified(&ball, 1, strategy, Types::Both))
+        };
+        assert!(on(1) == on(3));
+    }
+}
+
+/// A scalar field, step by step and exactly: what is taken is the cheapest that is feasible, by the definition.
+#[test]
+fn the_cheapest_goes_first() {
+    let full = complex(kuhn_grid(3, 3, 3));
+    let values: Vec<f32> = (0..full.num_ids()).map(|cell| ((cell * 7919) % 1009) as f32).collect();
+    let options = SimplifyOptions { precision: Precision::Exact, ..Default::default() };
+    let (recorded, report) = simplify(full.clone(), &mut Field::of_cells(values.clone()), &options);
+    let mcc = recorded.view();
+    let cost = |low: sig_core::CellId, high: sig_core::CellId| (values[low.index()] - values[high.index()]).abs();
+    let mut left = full;
+    for number in (0..mcc.num_refinements()).rev() {
+        let view = mcc.refinement(number).unwrap();
+        let [low, high] = [view.low, view.high].map(|cell| sig_core::CellId::new(mcc.origin(cell).unwrap() as u32));
+        let feasible = Model::of(&left).feasible();
+        let least = feasible.iter().map(|pair| cost(pair.0, pair.1)).fold(f32::INFINITY, f32::min);
+        assert!(cost(low, high) == least, "{number}: {} is not {least}", cost(low, high));
+        left.kill(low, high).unwrap();
+    }
+    assert_eq!(left.counts(), report.base);
+    let by_dimension: usize = report.by_dimension.iter().flatten().sum();
+    assert_eq!(by_dimension, report.simplifications);
 }
 
 #[test]
