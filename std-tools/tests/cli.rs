@@ -59,6 +59,10 @@ fn golden_files_are_built_again() {
         sig(&[&["build", "-o", built.to_str().unwrap()], *arguments].concat(), input);
         assert!(fs::read(&built).unwrap() == fs::read(expected).unwrap(), "{}", expected.display());
     }
+    let [built, simplified] = ["triangle.sigc", "triangle.mcc"].map(|name| directory.path().join(name));
+    sig(&["build", "triangle.off", "-o", built.to_str().unwrap()], "");
+    sig(&["simplify", built.to_str().unwrap(), "-o", simplified.to_str().unwrap()], "");
+    assert!(fs::read(&simplified).unwrap() == fs::read(golden.join("triangle.mcc")).unwrap(), "triangle.mcc");
 }
 
 /// Text, JSON and files: whatever goes there.

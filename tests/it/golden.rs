@@ -4,12 +4,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sig_core::format;
+use sig_core::format::{self, Column, Encoder, Kind, Section, SectionKind};
 use sig_core::{IndexWidth, Tree, with_complex};
 use sig_tests::conformance::{assert_conforms, assert_tree_conforms};
 use sig_tests::encode::{Names, Options, encode_file, encode_tree_file, in_host_order, least_width};
 use sig_tests::known;
 use sig_tests::oracle::Oracle;
+use sig_tools::mcc::{MccFile, verify};
 use sig_tools::store::AlignedBytes;
 use sig_tools::{Loaded, with_view};
 
@@ -62,6 +63,53 @@ fn trees_are_what_the_format_says() {
         assert_eq!(tree.validate(), Ok(()));
         assert_tree_conforms(&tree, oracle);
     }
+}
+
+/// A triangle whose vertices 0, 1 and 2 are at (0, 0), (0, 3) and (4, 0), simplified by the extent of what goes: vertex 0 is
+/// merged with 1 by edge 01, then 1 with 2 by edge 12, then edge 02, which is a loop by now, goes with the triangle. Every number
+/// is worked out from `core/FORMAT.md`. The edges 01, 02, 12 are cells 3, 4, 5 of the full complex, the triangle is cell 6.
+#[test]
+fn multi_resolution_complexes_are_what_the_format_says() {
+    let arc = |cell: u32, code: u32| 8 * cell + code;
+    let (plus, minus, loop_of_two) = (0, 1, 2);
+    let words = |kind, words| Section::new(kind, Column::U32(words));
+    let coordinates = Column::F64(&[0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 4.0, 0.0, 0.0]);
+    let arcs = [
+        // Edge 02 and the triangle, which has no other edge by then: the edge begins and ends in vertex 2.
+        arc(0, loop_of_two),
+        // Vertex 1 and edge 12: the edge ends in 2, edge 02 began in 1, the triangle goes along the edge.
+        arc(0, plus),
+        arc(1, minus),
+        arc(2, plus),
+        // Vertex 0 and edge 01: the edge ends in 1, edge 02 began in 0, the triangle goes along the edge.
+        arc(3, plus),
+        arc(1, minus),
+        arc(2, plus),
+    ];
+    let lengths = |first: u32, second: u32, third: u32| first | second << 10 | third << 20;
+    let sections = [
+        words(SectionKind::Lookup, &[0, 1, 1]),
+        Section { components: 3, ..Section::new(SectionKind::Coordinates, coordinates) },
+        words(SectionKind::BaseOffsets, &[0, 0]),
+        words(SectionKind::CellArcs, &arcs),
+        words(SectionKind::Origins, &[2, 4, 6, 1, 5, 0, 3]),
+        words(SectionKind::RefinementOffsets, &[0, 1, 4, 7]),
+        // All signs are −1: edge 02 in 12 − 02 + 01, and the vertices in which edges begin.
+        Section::new(SectionKind::RefinementShapes, Column::U8(&[128 + 1, 128, 128])),
+        words(SectionKind::RefinementSplits, &[lengths(1, 0, 0), lengths(0, 1, 1), lengths(0, 1, 1)]),
+        Section::new(SectionKind::RefinementErrors, Column::F32(&[5.0, 5.0, 3.0])),
+        words(SectionKind::RefinementSites, &[0, 1, 0]),
+        // Sites are at x = 0, all three: by number.
+        words(SectionKind::SiteTree, &[0, 1, 2]),
+    ];
+    let encoder = Encoder::new(Kind::MultiResolution, IndexWidth::Bits32, 3, 7, &sections).unwrap();
+    let encoder = encoder.with_checksums().unwrap();
+    let mut expected = AlignedBytes::zeroed(usize::try_from(encoder.file_bytes()).unwrap());
+    encoder.encode(&mut expected).unwrap();
+    let file = MccFile::from_file_bytes(in_host_order(expected.clone())).unwrap();
+    assert_eq!(file.view().validate(), Ok(()));
+    assert_eq!(verify(file.view()), Ok(1));
+    assert_golden(&golden("triangle.mcc"), &in_host_order(expected));
 }
 
 /// The file that the documentation of `sig-core` opens: two tetrahedra on a common triangle, with a dangling edge.

@@ -37,6 +37,13 @@ pub(super) fn spread(arcs: &[PackedArc], slots: &mut [PackedArc]) {
     }
 }
 
+/// Lays arcs out over slots, the gaps at the end: where one comes last others will, as refinements do in the order of a file.
+fn pack(arcs: &[PackedArc], slots: &mut [PackedArc]) {
+    let (packed, gaps) = slots.split_at_mut(arcs.len());
+    packed.copy_from_slice(arcs);
+    gaps.fill(arcs[arcs.len() - 1]);
+}
+
 /// Makes a gap of the arc to a cell that is in the list, which has others. Cost: a search, and the gaps after it.
 pub(super) fn remove(slots: &mut [PackedArc], cell: CellId) {
     let start = lower_bound(slots, cell);
@@ -66,12 +73,17 @@ pub(super) fn insert(slots: &mut [PackedArc], arc: PackedArc) -> bool {
             return false;
         }
         let place = lower_bound(slots, arc.cell());
+        let is_last = place == slots.len();
         let range = place.saturating_sub(part)..slots.len().min(place + part);
         let before = range.start.checked_sub(1).map(|at| slots[at].cell());
         let slots = &mut slots[range];
         let arcs: Vec<PackedArc> = arcs(slots).skip_while(|arc| Some(arc.cell()) == before).collect();
         if arcs.len() + slots.len() / rarity < slots.len() {
-            spread(&arcs, slots);
+            if is_last {
+                pack(&arcs, slots);
+            } else {
+                spread(&arcs, slots);
+            }
         }
         (part, rarity) = (part * 8, (rarity * 3 / 4).max(6));
     }

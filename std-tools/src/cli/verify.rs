@@ -21,7 +21,7 @@ use super::{Silent, mcc_input, output, progress};
 #[command(after_help = "\
 Examples:
   sig verify bunny.sigc
-  sig verify bunny.mcc               also that every refinement can be applied, and what all of them make
+  sig verify bunny.mcc               also that all refinements can be applied
   sig verify bunny.sigc --rebuild    also compute the partial co-boundary relations again and compare")]
 pub(super) struct Args {
     /// The file; `-` is standard input
