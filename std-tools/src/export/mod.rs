@@ -142,10 +142,9 @@ impl Format {
     #[must_use]
     pub const fn loses(self) -> &'static str {
         match self {
-            Self::Off | Self::Ply | Self::Medit | Self::Mfem | Self::Tops | Self::Obj => "labels",
+            Self::Off | Self::Obj | Self::Ply | Self::Vtk | Self::Medit | Self::Mfem | Self::Tops => "labels",
             Self::Stl => "labels, precision beyond 32 bits, vertices that share a place",
             Self::Msh => "labels but integers from 1",
-            Self::Vtk => "labels",
             Self::Vtu => "labels but integers",
             Self::Gltf => "labels, precision beyond 32 bits, what lies inside of solids",
             Self::SimplexList => "coordinates",

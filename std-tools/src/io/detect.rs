@@ -26,6 +26,11 @@ pub(super) fn format(source: &mut Source<'_>, name: &str) -> Result<Format, Faul
                        simplices, --format simplices";
         return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
     }
+    if format == Some(Format::Tetgen) && !without_suffix(&name.to_ascii_lowercase()).ends_with(".node") {
+        let message =
+            "this is one of several files of a mesh; `sig convert` and `sig build` take it with those beside it";
+        return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+    }
     format.ok_or_else(|| Fault::new(Position::Whole, ErrorKind::UnknownFormat))
 }
 

@@ -37,6 +37,8 @@ struct Mesh {
     intake: Intake,
     /// The greatest vertex number so far, and where; the number of vertices comes last.
     greatest: Option<(u32, Position)>,
+    /// How many times an element names a vertex.
+    named: u64,
     /// The number of vertices and, if they have any, their coordinates.
     vertices: Option<(u32, Option<(usize, Scalars)>)>,
 }
@@ -65,6 +67,7 @@ impl Mesh {
                 }
                 nodes.push(vertex);
             }
+            self.named += nodes.len() as u64;
             self.intake
                 .element(shape, &nodes, u64::from)
                 .map_err(|refusal| Fault::new(position, refusal.kind(|vertex| vertex.to_string())))?;
@@ -76,10 +79,24 @@ impl Mesh {
     fn read_vertices(&mut self, words: &mut Words<'_, '_>) -> Result<(), Fault> {
         let count: u32 = words.integer("the number of vertices (below 2^32)")?;
         if !words.first_byte()?.is_some_and(|first| first.is_ascii_digit()) {
+            // Nothing but elements vouches for them: a number alone may not ask for memory.
+            if u64::from(count) > self.named {
+                let kind = ErrorKind::WrongCount {
+                    what: "vertices without coordinates that an element has",
+                    declared: count.into(),
+                    found: self.named,
+                };
+                return Err(Fault::new(words.source.end_of_text(), kind));
+            }
             self.vertices = Some((count, None));
             return Ok(());
         }
-        let dim: u8 = words.integer("the dimension of the space, from 1 to 255")?;
+        const DIMENSION: &str = "the dimension of the space, from 1 to 255";
+        let line = words.need(DIMENSION)?;
+        let dim: u8 = line.parse_integer(line.as_word(), DIMENSION)?;
+        if dim == 0 {
+            return Err(line.unexpected(line.as_word(), DIMENSION));
+        }
         let mut values = Vec::with_capacity(reserve(u64::from(count) * u64::from(dim)));
         for _ in 0..u64::from(count) * u64::from(dim) {
             values.push(words.float("a coordinate of a vertex, as many vertices as the section says")?);
@@ -127,7 +144,7 @@ fn header(source: &mut Source<'_>) -> Result<(), Fault> {
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
     header(source)?;
     let mut words = Words::new(source, COMMENT);
-    let mut mesh = Mesh { intake: Intake::new(Format::Mfem, options), greatest: None, vertices: None };
+    let mut mesh = Mesh { intake: Intake::new(Format::Mfem, options), greatest: None, named: 0, vertices: None };
     while let Some(mut line) = words.next()? {
         let word = line.need_word("a section")?;
         match word.bytes {

@@ -51,6 +51,11 @@ impl<'a> Line<'a> {
         self
     }
 
+    /// The whole line as a word, which it must be.
+    pub(super) fn as_word(&self) -> Word<'a> {
+        Word { bytes: self.bytes, at: 0 }
+    }
+
     /// What is left of the line.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at.min(self.bytes.len())..]
@@ -119,6 +124,11 @@ impl<'a> Line<'a> {
     /// The next word as a finite number.
     pub(super) fn float<T: Float>(&mut self, expected: &'static str) -> Result<T, Fault> {
         let word = self.need_word(expected)?;
+        self.parse_finite(word, expected)
+    }
+
+    /// A word of this line as a finite number.
+    pub(super) fn parse_finite<T: Float>(&self, word: Word<'_>, expected: &'static str) -> Result<T, Fault> {
         match parse_float::<T>(word.bytes) {
             Some(value) if value.finite() => Ok(value),
             Some(_) => Err(self.fault(word.at, ErrorKind::NotFinite { found: excerpt(word.bytes) })),

@@ -41,19 +41,21 @@ impl<'s, 'a> Words<'s, 'a> {
 
     /// The next word as an integer.
     pub(super) fn integer<T: TryFrom<i64>>(&mut self, expected: &'static str) -> Result<T, Fault> {
-        self.need(expected)?.integer(expected)
+        let line = self.need(expected)?;
+        line.parse_integer(line.as_word(), expected)
     }
 
     /// The next word as a finite number.
     pub(super) fn float<T: Float>(&mut self, expected: &'static str) -> Result<T, Fault> {
-        self.need(expected)?.float(expected)
+        let line = self.need(expected)?;
+        line.parse_finite(line.as_word(), expected)
     }
 
     /// The next word as the number of a vertex, of which there are `vertices`, numbered from `first`; from 0 in what is
     /// returned.
     pub(super) fn vertex(&mut self, first: u8, vertices: u32, expected: &'static str) -> Result<u32, Fault> {
-        let mut line = self.need(expected)?;
-        let index: i64 = line.integer(expected)?;
+        let line = self.need(expected)?;
+        let index: i64 = line.parse_integer(line.as_word(), expected)?;
         match u32::try_from(index.saturating_sub(first.into())) {
             Ok(vertex) if vertex < vertices => Ok(vertex),
             _ => Err(line.fault(0, ErrorKind::OutOfRange { index, vertices: vertices.into(), first })),

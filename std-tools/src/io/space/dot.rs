@@ -14,7 +14,16 @@ const MAX_NAME: usize = 1 << 20;
 
 /// Whether a text that begins so is a graph in DOT.
 pub(super) fn is_graph(head: &[u8]) -> bool {
-    let text = head.trim_ascii_start();
+    let mut text = head.trim_ascii_start();
+    // Comments may come first.
+    loop {
+        let end = match text {
+            [b'/', b'*', ..] => memchr::memmem::find(text, b"*/").map(|at| at + 2),
+            [b'/', b'/', ..] | [b'#', ..] => memchr::memchr(b'\n', text),
+            _ => break,
+        };
+        text = text[end.unwrap_or(text.len())..].trim_ascii_start();
+    }
     let mut words = text.split(|&byte| byte.is_ascii_whitespace() || byte == b'{').filter(|word| !word.is_empty());
     let first = words.next().map(<[u8]>::to_ascii_lowercase).unwrap_or_default();
     let rest = &text[first.len().min(text.len())..];

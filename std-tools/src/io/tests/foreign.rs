@@ -2,7 +2,7 @@
 //! all faces of all pieces by itself.
 
 use super::super::{Compression, Format, ReadOptions, read_bytes, read_path};
-use super::{doubles, f_vector, message};
+use super::{doubles, f_vector, message, refused};
 use crate::soup::{Labels, Soup};
 
 fn path(name: &str) -> String {
@@ -234,6 +234,29 @@ fn small_files_of_finite_elements() {
         (vec![vec![0, 1, 2], vec![0, 2, 3]], vec![vec![3, 0]])
     );
     assert_eq!(report.ignored.names, ["elements of type U1", "*MATERIAL"]);
+}
+
+/// Vertices that nothing vouches for would take memory by their number alone.
+#[test]
+fn vertices_without_coordinates_are_in_elements() {
+    let mesh =
+        |element: &str, vertices: &str| format!("MFEM mesh v1.0\nelements\n1\n{element}\nvertices\n{vertices}\n");
+    assert!(super::read_as(Format::Mfem, mesh("1 1 0 1", "2\nnodes\nany")).is_ok());
+    refused(
+        Format::Mfem,
+        &[
+            (
+                &mesh("1 1 0 1", "4000000000\nnodes"),
+                "test:7:1: vertices without coordinates that an element has: 4000000000",
+            ),
+            (&mesh("1 1 0 3999999999", "4000000000"), "test:7:1: vertices without coordinates that an element has"),
+            (
+                &mesh("1 1 0 1", "4000000000\n0"),
+                "test:7:1: expected the dimension of the space, from 1 to 255, found `0`",
+            ),
+            (&mesh("1 1 0 2", "2\nnodes"), "test:4:7: vertex 2 is out of range: there are 2 vertices, numbered from 0"),
+        ],
+    );
 }
 
 /// For tests of hostile input.

@@ -24,10 +24,10 @@ pub(super) struct Layout {
 /// The values of base64's digits; 64 for bytes that are none.
 const DIGITS: [u8; 256] = {
     let digits = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let (mut table, mut at) = ([64; 256], 0);
-    while at < 64 {
-        table[digits[at] as usize] = at as u8;
-        at += 1;
+    let (mut table, mut digit) = ([64; 256], 0_u8);
+    while digit < 64 {
+        table[digits[digit as usize] as usize] = digit;
+        digit += 1;
     }
     table
 };

@@ -63,7 +63,7 @@ impl File {
         }
         let mut words = Words::new(source, None);
         for _ in 0..count {
-            values.push_text(&mut words.need(expected)?)?;
+            values.push_text(&words.need(expected)?)?;
         }
         Ok(())
     }

@@ -155,13 +155,14 @@ impl Values {
         Ok(())
     }
 
-    /// Adds a number in text.
-    fn push_text(&mut self, line: &mut Line<'_>) -> Result<(), Fault> {
+    /// Adds a number in text, which is all of the line.
+    fn push_text(&mut self, line: &Line<'_>) -> Result<(), Fault> {
+        const COORDINATE: &str = "a coordinate of a point";
         match self {
-            Self::Points(Scalars::F32(values)) => values.push(line.float("a coordinate of a point")?),
-            Self::Points(Scalars::F64(values)) => values.push(line.float("a coordinate of a point")?),
+            Self::Points(Scalars::F32(values)) => values.push(line.parse_finite(line.as_word(), COORDINATE)?),
+            Self::Points(Scalars::F64(values)) => values.push(line.parse_finite(line.as_word(), COORDINATE)?),
             _ => {
-                let number = line.integer("an integer")?;
+                let number = line.parse_integer(line.as_word(), "an integer")?;
                 self.push(Number::Integer(number)).map_err(|kind| line.fault(0, kind))?;
             }
         }

@@ -186,8 +186,8 @@ impl Grid {
             "ascii" if tag.empty => {}
             "ascii" => {
                 let mut words = Words::before(source, b'<');
-                while let Some(mut line) = words.next()? {
-                    values.push_text(&mut line)?;
+                while let Some(line) = words.next()? {
+                    values.push_text(&line)?;
                 }
             }
             "binary" => {
