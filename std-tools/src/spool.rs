@@ -72,7 +72,7 @@ impl Spool {
 
     /// Writes a run anew, with as many numbers as it has.
     fn overwrite(&self, run: Run, numbers: &[u32]) -> io::Result<()> {
-        write_at(&mut self.file().0, run.start, bytemuck::cast_slice(&numbers[..run.len]))
+        write_at(&self.file().0, run.start, bytemuck::cast_slice(&numbers[..run.len]))
     }
 }
 

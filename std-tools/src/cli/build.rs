@@ -31,7 +31,7 @@ Examples:
   sig build part1.txt part2.txt -o all.sigc --force     simplices by label, from two files
   sig build bracket.msh.gz -o bracket.sigc --order input --json
   printf 'a,b,c\\nc,d\\n' | sig build - -o small.sigc --format simplices
-  sig build huge.msh -o huge.sigc --memory 4GiB         a complex larger than that, by way of the disk")]
+  sig build huge.msh -o huge.sigc --memory 4GiB         larger than that, by way of the disk")]
 pub(super) struct Args {
     /// The inputs; `-` is standard input
     #[arg(required = true, value_name = "INPUT")]
