@@ -16,6 +16,8 @@ mod extract;
 mod frozen_output;
 mod generate;
 mod homology;
+mod homology_input;
+mod homology_report;
 mod info;
 mod input;
 mod interrupt;
