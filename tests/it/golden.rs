@@ -87,6 +87,7 @@ fn multi_resolution_complexes_are_what_the_format_says() {
         arc(2, plus),
     ];
     let lengths = |first: u32, second: u32, third: u32| first | second << 10 | third << 20;
+    let splits = [lengths(1, 0, 0), lengths(0, 1, 1), lengths(0, 1, 1)];
     let sections = [
         words(SectionKind::Lookup, &[0, 1, 1]),
         Section { components: 3, ..Section::new(SectionKind::Coordinates, coordinates) },
@@ -96,7 +97,7 @@ fn multi_resolution_complexes_are_what_the_format_says() {
         words(SectionKind::RefinementOffsets, &[0, 1, 4, 7]),
         // All signs are −1: edge 02 in 12 − 02 + 01, and the vertices in which edges begin.
         Section::new(SectionKind::RefinementShapes, Column::U8(&[128 + 1, 128, 128])),
-        words(SectionKind::RefinementSplits, &[lengths(1, 0, 0), lengths(0, 1, 1), lengths(0, 1, 1)]),
+        words(SectionKind::RefinementSplits, &splits),
         Section::new(SectionKind::RefinementErrors, Column::F32(&[5.0, 5.0, 3.0])),
         words(SectionKind::RefinementSites, &[0, 1, 0]),
         // Sites are at x = 0, all three: by number.

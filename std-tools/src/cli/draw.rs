@@ -18,7 +18,7 @@ use sig_tools::store::atomic::Existing;
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Loaded, View};
 
-use super::homology::{self, Source};
+use super::homology_input::{self, Source};
 use super::input::{How, Input};
 use super::output::{self, Content, Target};
 use super::query::Question;
@@ -205,7 +205,7 @@ impl Args {
             return self.front();
         }
         let name = displayed(&self.file);
-        let Source::Simplicial(input) = homology::open(&self.file, &self.how, self.format)? else {
+        let Source::Simplicial(input) = homology_input::open(&self.file, &self.how, self.format)? else {
             anyhow::bail!("{name}: cells of any shape in text have no picture");
         };
         let input = whole(input, &name)?;
@@ -219,7 +219,7 @@ impl Args {
             return Err(UsageError("--arrays are drawn as SVG only".to_owned()).into());
         }
         let is_simplicial = !mcc_input::is_one(&self.file);
-        let source = is_simplicial.then(|| homology::open(&self.file, &self.how, self.format)).transpose()?;
+        let source = is_simplicial.then(|| homology_input::open(&self.file, &self.how, self.format)).transpose()?;
         let Some(Source::Simplicial(input)) = source else {
             anyhow::bail!("{name}: --arrays are those of a simplicial complex");
         };

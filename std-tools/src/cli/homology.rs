@@ -1,30 +1,26 @@
-//! `sig homology`: Betti numbers and torsion coefficients.
+//! `sig homology`: Betti numbers, torsion and generators.
 
-use std::fmt::Write as _;
-use std::io::{self, BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use hashbrown::HashMap;
-use serde::{Serialize, Serializer};
+use num_traits::ToPrimitive;
 use sig_core::{Dim, Relations, SimplexId, VertexId};
-use sig_tools::build::{BuildOptions, build};
-use sig_tools::cells::{CellComplex, read_cells};
+use sig_tools::export::{self, ExportError, NamedChain, check_chains, export_chains};
 use sig_tools::homology::{
-    BigInt, Cells, Chain, Chains, Coefficients, Generator, Homology, HomologyError, HomologyOptions, Simplices,
-    generators, homology, is_prime,
+    Cells, Chains, Generator, GeneratorOptions, Homology, HomologyError, HomologyOptions, Limits, Simplices,
+    generators, homology,
 };
-use sig_tools::io::{Format, ReadOptions, read};
+use sig_tools::io::Format;
 use sig_tools::mcc::Front;
-use sig_tools::names::{simplex_labels, vertex_label};
-use sig_tools::store::{EncodeOptions, Encoding};
-use sig_tools::{Loaded, with_view};
+use sig_tools::names::simplex_labels;
+use sig_tools::with_view;
 
-use super::input::{How, Input};
-use super::output::{self, grouped, table};
-use super::tree_input::{self, Opened};
-use super::{Threads, UsageError, mcc_input, progress};
+use super::expansion::bytes;
+use super::homology_input::{Source, marked, marked_cells, open};
+use super::homology_report::{Named, NamedGenerators, Report, Ring};
+use super::input::How;
+use super::{Threads, UsageError, interrupt, output, progress, tree_input};
 
 /// Compute homology: how many components, tunnels and voids there are, and which torsion
 ///
@@ -39,8 +35,11 @@ Examples:
   sig homology klein.off --over Q                       of a mesh, without a file
   sig homology ball.sigc --relative sphere.simplices    relative to a subcomplex, by its vertex labels
   sig homology torus.off --generators                   with cycles, by the labels of the vertices
+  sig homology torus.off --shorten -o loops.vtu         loops as short as can be, for ParaView
   sig homology lens.cells                               of a cell complex in text
-  sig homology bunny.mcc                                of a multi-resolution complex: that of every front")]
+  sig homology bunny.mcc                                of a multi-resolution complex: that of every front
+  sig homology bunny.mcc --generators --count 5000      with cycles of the front after 5000 refinements
+  sig homology rips.sigc --max-dim 4 --max-seconds 60   what is found within a minute, up to dimension 4")]
 pub(super) struct Args {
     /// The complex; `-` is standard input
     file: PathBuf,
@@ -52,7 +51,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "RING", default_value = "Z")]
     over: Ring,
 
-    /// Relative to a subcomplex: a file of simplices that must be in the complex, faces of theirs being meant, too
+    /// Relative to a subcomplex: a file of simplices that must be in the complex, faces of theirs being meant, too; of cells,
+    /// a text with the dimension and the number of a cell on each line
     #[arg(long, value_name = "SUB")]
     relative: Option<PathBuf>,
 
@@ -60,6 +60,44 @@ pub(super) struct Args {
     /// dimension; of torsion also a chain, the boundary of which is the cycle times its order
     #[arg(long)]
     generators: bool,
+
+    /// Write the cycles that generate the groups, for other programs to show: .vtu, with the number of the chain and the
+    /// coefficient of each simplex, or .obj, a group each
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+
+    /// Replace OUT if it exists
+    #[arg(long, requires = "output")]
+    force: bool,
+
+    /// Make cycles of dimension 1 shorter in their classes, piece by piece: by the lengths of edges where there are coordinates,
+    /// else by their number
+    #[arg(long)]
+    shorten: bool,
+
+    /// Tell cocycles, too, each of them 1 on the cycle of its generator and 0 on the others
+    #[arg(long)]
+    cocycles: bool,
+
+    /// The highest dimension of a group; simplices of more than one dimension above it are not looked at
+    #[arg(long, value_name = "K")]
+    max_dim: Option<u8>,
+
+    /// Of a multi-resolution complex, the front after the first N refinements
+    #[arg(long, value_name = "N")]
+    count: Option<usize>,
+
+    /// Of a multi-resolution complex, the front with the refinements without which the error would be above E
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    error: Option<f32>,
+
+    /// Stop after so many seconds, and tell what was found
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    max_seconds: Option<Duration>,
+
+    /// Stop before so much memory is taken beside the complex, like 4GiB, and tell what was found
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    max_memory: Option<u64>,
 
     /// The format of meshes and lists of simplices; by default it is found by content, then by name
     #[arg(short, long, value_parser = super::named(Format::ALL, Format::name, Format::description))]
@@ -73,271 +111,205 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// Coefficients as they are written on the command line.
-#[derive(Clone, Copy)]
-struct Ring(Coefficients);
-
-impl FromStr for Ring {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let ring = match text {
-            "Z" => Some(Coefficients::Integers),
-            "Q" => Some(Coefficients::Rationals),
-            _ => {
-                let prime = text.strip_prefix('Z').map(|digits| digits.strip_prefix('/').unwrap_or(digits));
-                prime.and_then(|digits| digits.parse().ok()).filter(|&p| is_prime(p)).map(Coefficients::Prime)
-            }
-        };
-        ring.map(Self).ok_or_else(|| "it is neither Z, nor Q, nor Zp with a prime p, such as Z2".to_owned())
-    }
+/// A number of seconds.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    seconds.ok_or_else(|| "not a number of seconds".to_owned())
 }
-
-impl Ring {
-    /// The ring, raised to a power.
-    fn power(self, rank: usize) -> String {
-        let ring = match self.0 {
-            Coefficients::Integers => "Z".to_owned(),
-            Coefficients::Rationals => "Q".to_owned(),
-            Coefficients::Prime(p) if rank > 1 => format!("(Z/{p})"),
-            Coefficients::Prime(p) => format!("Z/{p}"),
-        };
-        if rank > 1 { format!("{ring}^{rank}") } else { ring }
-    }
-}
-
-/// The homology; as JSON, the names of the fields.
-#[derive(Serialize)]
-struct Report {
-    betti: Vec<usize>,
-    torsion: Vec<Vec<Factor>>,
-    over: String,
-    euler_characteristic: i64,
-    cells: Vec<usize>,
-    critical: Vec<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    generators: Option<Vec<Vec<Named>>>,
-}
-
-/// A generator in names.
-#[derive(Serialize)]
-struct Named {
-    /// Of a class of finite order.
-    order: Option<Factor>,
-    cycle: Vec<Term>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bounds: Option<Vec<Term>>,
-}
-
-/// A coefficient, and what it stands before: the labels of a simplex, or the number of a cell.
-#[derive(Serialize)]
-struct Term(Factor, Vec<String>);
-
-impl Named {
-    fn new(dim: Dim, generator: Generator, name: &impl Fn(Dim, u32) -> Vec<String>) -> Self {
-        let terms = |dim: Dim, chain: Chain| {
-            let term = |(cell, coefficient)| Term(Factor(coefficient), name(dim, cell));
-            chain.into_iter().map(term).collect()
-        };
-        Self {
-            order: generator.order.map(Factor),
-            cycle: terms(dim, generator.cycle),
-            bounds: generator.bounds.map(|chain| terms(dim + 1, chain)),
-        }
-    }
-}
-
-/// Writes a chain as cell complexes in text have it: `+a,b 2*-b,c`.
-fn chain(terms: &[Term]) -> String {
-    let term = |Term(Factor(coefficient), name): &Term| {
-        let sign = if *coefficient < BigInt::from(0) { '-' } else { '+' };
-        let times = coefficient.magnitude();
-        let times = if *times == 1_u32.into() { String::new() } else { format!("{times}*") };
-        format!("{times}{sign}{}", name.join(","))
-    };
-    terms.iter().map(term).collect::<Vec<_>>().join(" ")
-}
-
-/// A number of JSON where it is less than 2⁵³ off 0, so that every reader takes it as it is, else a string of digits.
-struct Factor(BigInt);
-
-impl Serialize for Factor {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match i64::try_from(&self.0) {
-            Ok(number) if number.abs() < 1 << 53 => serializer.serialize_i64(number),
-            _ => serializer.collect_str(&self.0),
-        }
-    }
-}
-
-/// What was read.
-pub(super) enum Source {
-    Simplicial(Input),
-    Cells(CellComplex),
-}
-
-/// The generators of each dimension, in names.
-type NamedGenerators = Vec<Vec<Named>>;
 
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         self.threads.start()?;
-        let options = HomologyOptions { over: self.over.0, ..HomologyOptions::default() };
-        let (found, generators) = match open(&self.file, &self.how, self.format)? {
-            Source::Cells(_) if self.relative.is_some() => {
-                let message = "--relative wants a simplicial complex, and this is a cell complex".to_owned();
-                return Err(UsageError(message).into());
-            }
+        let written = self.written()?;
+        let until = self.max_seconds.and_then(|seconds| Instant::now().checked_add(seconds));
+        let source = open(&self.file, &self.how, self.format)?;
+        let is_multi_resolution = matches!(source, Source::MultiResolution(_));
+        if (self.count.is_some() || self.error.is_some()) && !is_multi_resolution {
+            return Err(UsageError("--count and --error want a multi-resolution complex".to_owned()).into());
+        }
+        if written.is_some() && !matches!(source, Source::Simplicial(_)) {
+            return Err(UsageError("-o wants a simplicial complex: cells have no shape".to_owned()).into());
+        }
+        interrupt::begin();
+        let limits = Limits { until, max_bytes: self.max_memory, interrupt: Some(interrupt::flag()), progress: None };
+        let options =
+            HomologyOptions { over: self.over.0, max_dim: self.max_dim.map(Dim::from), limits, ..Default::default() };
+        let options = GeneratorOptions { homology: options, cocycles: self.cocycles, lengths: None };
+        let (found, generators) = match source {
             Source::Cells(complex) => {
-                let name = |_: Dim, cell: u32| vec![cell.to_string()];
-                self.compute(&Cells::new(&complex), &options, &name)?
+                self.of_cells(&Cells::new(&complex), &options, &|_, cell| vec![cell.to_string()])?
+            }
+            Source::MultiResolution(file) => {
+                let mut front = Front::new(file.view());
+                let mcc = *front.mcc();
+                let is_wanted = |refinement: usize| {
+                    self.count.is_some_and(|count| refinement < count)
+                        || self.error.is_some_and(|error| mcc.error(refinement) > error)
+                };
+                front.select(is_wanted).with_context(|| self.file.display().to_string())?;
+                let cells = Cells::new(front.complex());
+                let ids: Vec<_> = (0..cells.counts().len()).map(|dim| cells.of_dim(dim)).collect();
+                // By the number in the complex that was simplified: there it was a simplex.
+                let name = |dim: Dim, cell: u32| {
+                    let id = ids[dim][cell as usize];
+                    vec![mcc.origin(id).unwrap_or(id.index()).to_string()]
+                };
+                self.of_cells(&cells, &options, &name)?
             }
             Source::Simplicial(input) => with_view!(input.view(), complex => {
                 let name = tree_input::displayed(&self.file);
                 complex.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
-                let marks = self.relative.as_deref().map(|path| marked(&complex, path, &self.how, self.format)).transpose()?;
-                let name = |dim: Dim, cell: u32| {
-                    let first = complex.simplices_of_dim(dim).bounds().0.index();
-                    simplex_labels(&complex, SimplexId::new(first + cell as usize))
-                };
-                let options = HomologyOptions { relative_to: marks.as_deref(), ..options };
-                self.compute(&Simplices(&complex), &options, &name)?
+                self.of_simplices(&complex, &options, written)?
             }),
         };
+        interrupt::end();
+        let stopped = found.stopped;
+        let report = Report::new(found, self.over, generators);
         if self.json {
-            output::json(&Report {
-                euler_characteristic: found.euler_characteristic(),
-                torsion: found.torsion.into_iter().map(|factors| factors.into_iter().map(Factor).collect()).collect(),
-                betti: found.betti,
-                over: Self::ring_name(self.over),
-                cells: found.counts,
-                critical: found.critical,
-                generators,
-            })?;
+            output::json(&report)?;
         } else {
-            output::stdout(|out| self.print(&found, generators.as_deref(), out))?;
+            let relative =
+                self.relative.as_deref().map_or(String::new(), |path| format!(" relative to {}", path.display()));
+            let title = format!("{}: homology{relative}", tree_input::displayed(&self.file));
+            output::stdout(|out| report.print(&title, self.over, out))?;
         }
-        Ok(())
+        match stopped {
+            Some(stopped) => Err(anyhow::anyhow!("{stopped}; what is not told was not found")),
+            None => Ok(()),
+        }
     }
 
-    /// The homology, and generators in names if they are asked for.
+    /// The format of the chains to be written, if any are.
+    fn written(&self) -> anyhow::Result<Option<export::Format>> {
+        let Some(path) = &self.output else { return Ok(None) };
+        if self.json && output::is_stdout(path) {
+            return Err(UsageError("--json and -o - both want standard output".to_owned()).into());
+        }
+        output::check(path, self.existing(), std::slice::from_ref(&self.file))?;
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+        match export::Format::from_name(extension) {
+            Some(format @ (export::Format::Obj | export::Format::Vtu)) => Ok(Some(format)),
+            _ => {
+                let message =
+                    format!("{}: the name does not tell the format; end it with .vtu or .obj", path.display());
+                Err(UsageError(message).into())
+            }
+        }
+    }
+
+    fn existing(&self) -> sig_tools::store::atomic::Existing {
+        use sig_tools::store::atomic::Existing;
+        if self.force { Existing::Replace } else { Existing::Refuse }
+    }
+
+    fn of_cells(
+        &self,
+        cells: &Cells<'_>,
+        options: &GeneratorOptions<'_>,
+        name: &impl Fn(Dim, u32) -> Vec<String>,
+    ) -> anyhow::Result<(Homology, Option<NamedGenerators>)> {
+        let marks = self.relative.as_deref().map(|path| marked_cells(cells, path, &self.how)).transpose()?;
+        let one = |_: u32| 1.0;
+        let mut options = *options;
+        options.homology.relative_to = marks.as_deref();
+        options.lengths = self.shorten.then_some(&one);
+        let (found, generators) = self.compute(cells, &options)?;
+        Ok((found, generators.map(|generators| named(generators, name))))
+    }
+
+    fn of_simplices<C: Relations + Sync>(
+        &self,
+        complex: &C,
+        options: &GeneratorOptions<'_>,
+        written: Option<export::Format>,
+    ) -> anyhow::Result<(Homology, Option<NamedGenerators>)> {
+        let marks = self.relative.as_deref().map(|path| marked(complex, path, &self.how, self.format)).transpose()?;
+        let length = |edge: u32| length(complex, edge);
+        let mut options = *options;
+        let of = |dim: Dim, cell: u32| SimplexId::new(complex.simplices_of_dim(dim).bounds().0.index() + cell as usize);
+        options.homology.relative_to = marks.as_deref();
+        options.lengths = self.shorten.then_some(&length);
+        if let Some(format) = written {
+            // Before the long work: whether there are coordinates.
+            check_chains(complex, format, &[])?;
+        }
+        let (found, generators) = self.compute(&Simplices(complex), &options)?;
+        if let (Some(path), Some(format), Some(generators)) = (&self.output, written, &generators) {
+            let chains = shown(generators, format, of);
+            output::to_path(path, self.existing(), |out| {
+                export_chains(complex, format, &chains, out).map_err(|error| match error {
+                    ExportError::Io(error) => error,
+                    other => std::io::Error::other(other),
+                })
+            })?;
+            output::log(format_args!("wrote  {}: {} cycles", path.display(), chains.len()));
+        }
+        let name = |dim: Dim, cell: u32| simplex_labels(complex, of(dim, cell));
+        let is_told = self.generators || self.cocycles || self.shorten || self.json;
+        Ok((found, generators.filter(|_| is_told).map(|generators| named(generators, &name))))
+    }
+
+    /// The homology, and generators if they are asked for.
     fn compute(
         &self,
         chains: &impl Chains,
-        options: &HomologyOptions<'_>,
-        name: &impl Fn(Dim, u32) -> Vec<String>,
-    ) -> Result<(Homology, Option<NamedGenerators>), HomologyError> {
-        let found = progress::during("computing homology", || homology(chains, options))?;
-        if !self.generators {
+        options: &GeneratorOptions<'_>,
+    ) -> anyhow::Result<(Homology, Option<Vec<Vec<Generator>>>)> {
+        let found = progress::part_of_any_thread("computing homology", |progress| {
+            let mut options = options.homology;
+            options.limits.progress = progress;
+            homology(chains, &options)
+        })?;
+        if !(self.generators || self.cocycles || self.shorten || self.output.is_some()) || found.stopped.is_some() {
             return Ok((found, None));
         }
-        let generators = progress::during("finding generators", || generators(chains, options))?;
-        let named = |(dim, all): (Dim, Vec<Generator>)| {
-            all.into_iter().map(|generator| Named::new(dim, generator, name)).collect()
-        };
-        Ok((found, Some(generators.into_iter().enumerate().map(named).collect())))
-    }
-
-    fn ring_name(ring: Ring) -> String {
-        ring.power(1)
-    }
-
-    fn print(&self, found: &Homology, generators: Option<&[Vec<Named>]>, out: &mut dyn Write) -> io::Result<()> {
-        let relative =
-            self.relative.as_deref().map_or(String::new(), |path| format!(" relative to {}", path.display()));
-        let (name, ring) = (tree_input::displayed(&self.file), Self::ring_name(self.over));
-        writeln!(out, "{name}: homology{relative} over {ring}\n")?;
-        if found.betti.is_empty() {
-            return writeln!(out, "the empty complex has none");
+        let result = progress::part_of_any_thread("finding generators", |progress| {
+            let mut options = *options;
+            options.homology.limits.progress = progress;
+            generators(chains, &options)
+        });
+        match result {
+            Err(HomologyError::Stopped(stopped)) => Ok((Homology { stopped: Some(stopped), ..found }, None)),
+            result => Ok((found, Some(result?))),
         }
-        let head = ["dimension", "cells", "critical", "Betti", "group"].map(str::to_owned).to_vec();
-        let row = |dim: usize| {
-            let (betti, torsion) = (found.betti[dim], &found.torsion[dim]);
-            let numbers = [found.counts[dim], found.critical[dim], betti].map(grouped);
-            [dim.to_string()].into_iter().chain(numbers).chain([group(self.over, betti, torsion)]).collect()
-        };
-        let rows: Vec<Vec<String>> = std::iter::once(head).chain((0..found.betti.len()).map(row)).collect();
-        table(&rows, out)?;
-        writeln!(out, "\nEuler characteristic {}", grouped(found.euler_characteristic()))?;
-        for (dim, all) in generators.into_iter().flatten().enumerate() {
-            for Named { order, cycle, bounds } in all {
-                let order = order.as_ref().map_or(String::new(), |Factor(order)| format!(", of order {order}"));
-                writeln!(out, "\ngenerator of dimension {dim}{order}: {}", chain(cycle))?;
-                if let Some(bounds) = bounds {
-                    writeln!(out, "so many times the cycle is the boundary of: {}", chain(bounds))?;
-                }
-            }
+    }
+}
+
+/// Generators in names.
+fn named(generators: Vec<Vec<Generator>>, name: &impl Fn(Dim, u32) -> Vec<String>) -> NamedGenerators {
+    let of_dim =
+        |(dim, all): (Dim, Vec<Generator>)| all.into_iter().map(|generator| Named::new(dim, generator, name)).collect();
+    generators.into_iter().enumerate().map(of_dim).collect()
+}
+
+/// The cycles of the dimensions that a format holds, as they are shown.
+fn shown(
+    generators: &[Vec<Generator>],
+    format: export::Format,
+    simplex: impl Fn(Dim, u32) -> SimplexId,
+) -> Vec<NamedChain> {
+    let most = if format == export::Format::Obj { 2 } else { 3 };
+    let mut chains = Vec::new();
+    for (dim, all) in generators.iter().enumerate().take(most + 1) {
+        for (number, generator) in all.iter().enumerate() {
+            let order = generator.order.as_ref().and_then(ToPrimitive::to_f64).unwrap_or(0.0);
+            let terms = generator.cycle.iter();
+            let terms = terms.map(|(cell, value)| (simplex(dim, *cell), value.to_f64().unwrap_or(f64::NAN))).collect();
+            let name = format!("generator_{dim}_{number}");
+            chains.push(NamedChain { name, id: i64::try_from(chains.len()).unwrap_or(0), order, terms });
         }
-        Ok(())
     }
+    chains
 }
 
-/// A group as a sum of cyclic ones.
-fn group(over: Ring, betti: usize, torsion: &[BigInt]) -> String {
-    let mut text = if betti > 0 { over.power(betti) } else { String::new() };
-    for equal in torsion.chunk_by(|one, other| one == other) {
-        let plus = if text.is_empty() { "" } else { " + " };
-        let _ = match equal {
-            [factor] => write!(text, "{plus}Z/{factor}"),
-            _ => write!(text, "{plus}(Z/{})^{}", equal[0], equal.len()),
-        };
-    }
-    if text.is_empty() { "0".to_owned() } else { text }
-}
-
-/// Opens a complex in any of its forms.
-pub(super) fn open(path: &Path, how: &How, format: Option<Format>) -> anyhow::Result<Source> {
-    if mcc_input::is_one(path) {
-        let file = mcc_input::open(path)?;
-        // Every front has the same homology, and the base complex is the smallest.
-        return Ok(Source::Cells(Front::new(file.view()).complex().clone()));
-    }
-    let (reader, length) = match tree_input::open(path, how)? {
-        Opened::Ours(input) => return Ok(Source::Simplicial(input)),
-        Opened::Other(reader, length) => (reader, length),
-    };
-    let name = tree_input::displayed(path);
-    let mut reader = BufReader::with_capacity(1 << 16, reader);
-    if format.is_none() && is_cells(reader.fill_buf().with_context(|| name.clone())?, &name) {
-        return Ok(Source::Cells(progress::during("reading", || read_cells(reader, &name))?));
-    }
-    let (soup, _) = progress::reading_of(length, &name, |progress| {
-        read(reader, &name, &ReadOptions { format, progress, ..ReadOptions::default() })
-    })?;
-    let built = progress::during("building", || build(soup, &BuildOptions::default()))?;
-    let bytes = Encoding::new(&built, &EncodeOptions { checksums: false, ..EncodeOptions::default() })?.to_bytes()?;
-    Ok(Source::Simplicial(Input::Loaded(Loaded::from_file_bytes(bytes)?)))
-}
-
-/// Whether a text is a cell complex: it says so, or, compressed, its name does.
-fn is_cells(head: &[u8], name: &str) -> bool {
-    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
-    let first = lines.into_iter().find(|line| !matches!(line, [] | [b'#', ..])).unwrap_or(&[]);
-    first.split(u8::is_ascii_whitespace).next() == Some(b"cells") || name.ends_with(".cells.gz")
-}
-
-/// For each dimension and simplex of the complex whether it belongs to the one at `path`, by the labels of its vertices.
-fn marked<C: Relations>(complex: &C, path: &Path, how: &How, format: Option<Format>) -> anyhow::Result<Vec<Vec<bool>>> {
-    let name = tree_input::displayed(path);
-    let Source::Simplicial(input) = open(path, how, format)? else {
-        return Err(UsageError(format!("{name}: --relative wants simplices, and these are cells")).into());
-    };
-    let dims = complex.dim().map_or(0, |dim| dim + 1);
-    let mut marks: Vec<Vec<bool>> = (0..dims).map(|dim| vec![false; complex.num_simplices_of_dim(dim)]).collect();
-    let vertices = (0..complex.num_vertices()).map(VertexId::new);
-    let by_label: HashMap<String, VertexId> = vertices.map(|vertex| (vertex_label(complex, vertex), vertex)).collect();
-    with_view!(input.view(), sub => {
-        sub.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
-        for simplex in sub.simplices() {
-            let labels = simplex_labels(&sub, simplex);
-            let missing = || format!("{name}: {} is no simplex of the complex", labels.join(","));
-            let word: Option<Vec<VertexId>> = labels.iter().map(|label| by_label.get(label).copied()).collect();
-            let mut word = word.with_context(missing)?;
-            word.sort_unstable();
-            let found: SimplexId = complex.find(&word).with_context(missing)?;
-            let dim = word.len() - 1;
-            marks[dim][found.index() - complex.simplices_of_dim(dim).bounds().0.index()] = true;
-        }
-    });
-    Ok(marks)
+/// The length of an edge, 1 if there are no coordinates.
+fn length(complex: &impl Relations, edge: u32) -> f64 {
+    let Some(section) = complex.coordinates() else { return 1.0 };
+    let components = section.components as usize;
+    let id = complex.simplices_of_dim(1).bounds().0.index() + edge as usize;
+    let value =
+        |vertex: VertexId, axis: usize| section.column.number_at(vertex.index() * components + axis).unwrap_or(0.0);
+    let mut ends = complex.vertices(SimplexId::new(id));
+    let Some((one, other)) = ends.next().zip(ends.next()) else { return 0.0 };
+    (0..components).map(|axis| (value(one, axis) - value(other, axis)).powi(2)).sum::<f64>().sqrt()
 }

@@ -19,6 +19,8 @@ mod formats;
 mod frozen_output;
 mod generate;
 mod homology;
+mod homology_input;
+mod homology_report;
 mod info;
 mod input;
 mod interrupt;

@@ -76,6 +76,20 @@ pub(super) fn part_of<T>(what: &'static str, work: impl FnOnce(Option<&dyn Fn(u6
     result
 }
 
+/// The same, told from any thread.
+pub(super) fn part_of_any_thread<T>(
+    what: &'static str,
+    work: impl FnOnce(Option<&(dyn Fn(u64, u64) + Sync)>) -> T,
+) -> T {
+    if !is_watched() {
+        return work(None);
+    }
+    let bars = Phases::new();
+    let result = work(Some(&|done, total| bars.step(what, done, total)));
+    bars.clear();
+    result
+}
+
 /// Bars for the phases of building, one after the other.
 pub(super) struct Phases {
     current: Mutex<Option<(&'static str, ProgressBar)>>,

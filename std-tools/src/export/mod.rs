@@ -4,6 +4,7 @@
 //! though the simplices are all there (labels, coordinates) it reports as a [`Note`]. Orientations are those of the
 //! input.
 
+mod chains;
 mod gltf;
 mod gudhi;
 mod medit;
@@ -26,6 +27,7 @@ use std::io::{self, Write};
 
 use sig_core::{Dim, Relations};
 
+pub use chains::{NamedChain, check_chains, export_chains};
 use mesh::Mesh;
 
 /// A format that can be written.
@@ -214,6 +216,12 @@ pub enum ExportError {
         format: Format,
         /// Coordinates a vertex.
         components: usize,
+    },
+    /// The format has no chains.
+    #[error("{format} holds no chains; use vtu or obj")]
+    NoChains {
+        /// The format.
+        format: Format,
     },
     /// A label that would be read back as something else.
     #[error("vertex label {label:?} cannot stand in a list of simplices: it has a separator or a bracket, or is empty")]

@@ -88,7 +88,8 @@ pub(crate) fn array(
     writeln!(out, "</DataArray>")
 }
 
-fn to_i64(number: usize) -> [u8; 8] {
+/// A number as 64 bits.
+pub(super) fn to_i64(number: usize) -> [u8; 8] {
     (number as u64).to_le_bytes()
 }
 

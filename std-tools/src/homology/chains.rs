@@ -216,6 +216,14 @@ impl<'a> Cells<'a> {
     }
 }
 
+impl Cells<'_> {
+    /// The cells of a dimension, by number.
+    #[must_use]
+    pub fn of_dim(&self, dim: Dim) -> Vec<CellId> {
+        self.complex.cells().filter(|&cell| self.complex.dim_of(cell) == Some(dim)).collect()
+    }
+}
+
 impl Chains for Cells<'_> {
     fn counts(&self) -> Vec<usize> {
         self.complex.counts().to_vec()

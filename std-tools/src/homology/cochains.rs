@@ -2,9 +2,10 @@
 //! critical cells, and whose co-boundary vanishes on every cell that went with one of its faces. Its co-boundary on a critical
 //! cell of the next dimension is the incidence number of the two in the Morse complex.
 
+use std::collections::BTreeMap;
 use std::hash::BuildHasher;
 
-use hashbrown::{DefaultHashBuilder, HashTable};
+use hashbrown::{DefaultHashBuilder, HashMap, HashTable};
 
 use super::Failure;
 use super::bits::Bits;
@@ -42,7 +43,7 @@ impl<E: Clone + Eq + std::hash::Hash> Cochains<E> {
         let mut critical = 0;
         let mut terms = Vec::new();
         for (number, step) in matching.steps.iter().enumerate() {
-            if number % PATIENCE == 0 {
+            if number.is_multiple_of(PATIENCE) {
                 watch.look(0)?;
             }
             let vector = if step.coface == NONE {
@@ -87,7 +88,26 @@ impl<E: Clone + Eq + std::hash::Hash> Cochains<E> {
         self.sum(ring, terms.into_iter())
     }
 
-    /// The same as a sum of vectors, each of them once: most often the vectors of two faces cancel, or there is one only.
+    /// The number of the vector of a cell, and the vector, if it is not zero.
+    pub(super) fn at(&self, cell: u32) -> Option<(u32, &Sparse<E>)> {
+        let number = self.of_cell[cell as usize];
+        (number != 0).then(|| (number, &self.vectors[number as usize]))
+    }
+
+    /// For each cochain the vectors that it has a part in, and for each vector its cells: to sum cochains by.
+    pub(super) fn by_critical(&self) -> ByCritical<'_, E> {
+        let mut vectors: HashMap<u32, Vec<u32>> = HashMap::new();
+        for (number, vector) in (0_u32..).zip(&self.vectors) {
+            vector.iter().for_each(|(critical, _)| vectors.entry(*critical).or_default().push(number));
+        }
+        let mut cells = vec![Vec::new(); self.vectors.len()];
+        for (cell, &number) in (0_u32..).zip(&self.of_cell).filter(|(_, number)| **number != 0) {
+            cells[number as usize].push(cell);
+        }
+        ByCritical { cochains: self, vectors, cells }
+    }
+
+    /// The co-boundary as a sum of vectors, each of them once: most often the vectors of two faces cancel, or there is one only.
     #[inline]
     fn terms(&self, level: &Level<'_>, cell: usize, terms: &mut Vec<(u32, i64)>) {
         terms.clear();
@@ -111,6 +131,38 @@ impl<E: Clone + Eq + std::hash::Hash> Cochains<E> {
         for (number, coefficient) in terms {
             add_multiple(ring, &mut sum, &ring.of(coefficient), &self.vectors[number as usize])?;
         }
+        Ok(sum)
+    }
+}
+
+/// The cochains, inverted.
+pub(super) struct ByCritical<'c, E> {
+    cochains: &'c Cochains<E>,
+    vectors: HashMap<u32, Vec<u32>>,
+    cells: Vec<Vec<u32>>,
+}
+
+impl<E: Clone> ByCritical<'_, E> {
+    /// A sum of multiples of the cochains. Cost: that of their values.
+    pub(super) fn combination<R: Ring<Element = E>>(
+        &self,
+        ring: &R,
+        multiples: &Sparse<E>,
+    ) -> Result<Sparse<E>, Overflow> {
+        let mut values: BTreeMap<u32, E> = BTreeMap::new();
+        for (critical, multiple) in multiples {
+            for &number in self.vectors.get(critical).into_iter().flatten() {
+                let vector = &self.cochains.vectors[number as usize];
+                let Ok(at) = vector.binary_search_by_key(critical, |(critical, _)| *critical) else { continue };
+                let sum = values.entry(number).or_insert_with(|| ring.of(0));
+                *sum = ring.add_product(sum, multiple, &vector[at].1)?;
+            }
+        }
+        values.retain(|_, value| !ring.is_zero(value));
+        let of_vector =
+            |(number, value): (u32, E)| self.cells[number as usize].iter().map(move |&cell| (cell, value.clone()));
+        let mut sum: Sparse<E> = values.into_iter().flat_map(of_vector).collect();
+        sum.sort_unstable_by_key(|(cell, _)| *cell);
         Ok(sum)
     }
 }

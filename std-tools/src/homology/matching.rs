@@ -81,7 +81,7 @@ fn pair_with<N: PrimInt + Unsigned + Send + Sync + AddAssign, S: Index>(
     let mut matching = Matching { steps: Vec::with_capacity(num_left), critical: Vec::new() };
     let mut first = 0;
     while matching.steps.len() < num_left {
-        if matching.steps.len() % PATIENCE == 0 {
+        if matching.steps.len().is_multiple_of(PATIENCE) {
             watch.look(if matching.steps.is_empty() { 0 } else { PATIENCE })?;
         }
         let step = match ready.next() {

@@ -3,10 +3,16 @@
 //!
 //! The complex is first reduced, dimension by dimension, by coreductions (`matching`), which pair almost all cells; what is left,
 //! the critical cells, are those of a Morse complex with the same homology. Its boundaries come from cochains (`cochains`), its
-//! Smith normal form from elimination (`eliminate`). Memory: the boundaries of two dimensions, the inverse of one of them and some
-//! bytes a cell of these; never those of the whole complex.
+//! Smith normal form from elimination (`eliminate`). Memory: the boundaries of two dimensions (`chains`; of one, where the file
+//! has them), the inverse of one of them and some bytes a cell of these; never those of the whole complex. Time and memory can be
+//! limited (`limits`).
 //!
-//! [`generators()`] gives cycles, too, as chains of the cells of the complex (`smith`, `generators`).
+//! [`generators()`] gives cycles, too, as chains of the cells of the complex, and the cocycles dual to them: critical cells of unit
+//! incidence cancel (`cancel`), a normal form with its bases takes the rest (`smith`), chains go back along the pairs
+//! (`generators`), and loops become shorter in their classes (`shorten`).
+//!
+//! What it cannot do without is reading each face of each cell thrice, to count, to invert and to pair: 4 bytes each time, and as
+//! many for each coface that is read when a cell goes.
 //!
 //! ```
 //! use sig_tools::cells::read_cells;
@@ -23,6 +29,7 @@
 //! ```
 
 mod bits;
+mod cancel;
 mod chains;
 mod cochains;
 mod eliminate;
@@ -30,6 +37,7 @@ mod generators;
 mod limits;
 mod matching;
 mod ring;
+mod shorten;
 mod smith;
 
 pub use num_bigint::BigInt;
@@ -40,7 +48,7 @@ use bits::Bits;
 pub use chains::{Cells, Chains, Level, Simplices};
 use cochains::{Below, Cochains};
 use eliminate::{Elimination, SmithForm};
-pub use generators::{Chain, Generator, generators};
+pub use generators::{Chain, Generator, GeneratorOptions, generators};
 use limits::Watch;
 pub use limits::{Limits, Stopped};
 use matching::{Matching, pair};

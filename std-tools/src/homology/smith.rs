@@ -1,5 +1,7 @@
 //! The Smith normal form of a small dense matrix, with the bases in which it has that form.
 
+use super::Failure;
+use super::limits::Watch;
 use super::ring::{Overflow, Ring};
 
 /// A matrix A, m × n, in the bases in which it is diagonal: `left⁻¹ A right`, each entry dividing the next.
@@ -9,6 +11,8 @@ pub(super) struct Smith<'r, R: Ring> {
     matrix: Vec<Vec<R::Element>>,
     /// m × m, by columns.
     left: Vec<Vec<R::Element>>,
+    /// The inverse of `left`, by rows.
+    left_inverse: Vec<Vec<R::Element>>,
     /// n × n, by columns.
     right: Vec<Vec<R::Element>>,
     /// The inverse of `right`, by rows.
@@ -18,14 +22,21 @@ pub(super) struct Smith<'r, R: Ring> {
 
 impl<'r, R: Ring> Smith<'r, R> {
     /// Of a matrix of so many columns, by rows.
-    pub(super) fn new(ring: &'r R, matrix: Vec<Vec<R::Element>>, columns: usize) -> Result<Self, Overflow> {
+    pub(super) fn new(
+        ring: &'r R,
+        matrix: Vec<Vec<R::Element>>,
+        columns: usize,
+        watch: &Watch<'_>,
+    ) -> Result<Self, Failure> {
         let identity = |size: usize| {
             let row = |at: usize| (0..size).map(|other| ring.of(i64::from(at == other))).collect();
             (0..size).map(row).collect::<Vec<Vec<_>>>()
         };
-        let (left, right, right_inverse) = (identity(matrix.len()), identity(columns), identity(columns));
-        let mut smith = Self { ring, matrix, left, right, right_inverse, rank: 0 };
+        let (left, left_inverse) = (identity(matrix.len()), identity(matrix.len()));
+        let (right, right_inverse) = (identity(columns), identity(columns));
+        let mut smith = Self { ring, matrix, left, left_inverse, right, right_inverse, rank: 0 };
         while smith.step()? {
+            watch.look(0)?;
             smith.rank += 1;
         }
         Ok(smith)
@@ -44,6 +55,16 @@ impl<'r, R: Ring> Smith<'r, R> {
     /// The basis of the range; `left[i]` times entry `i` is the image of `right[i]`.
     pub(super) fn left(&self) -> &[Vec<R::Element>] {
         &self.left
+    }
+
+    /// The inverse of the basis of the range, by rows: each gives the coordinate of a vector by one basis vector.
+    pub(super) fn left_inverse(&self) -> &[Vec<R::Element>] {
+        &self.left_inverse
+    }
+
+    /// The inverse of the basis of the domain, by rows.
+    pub(super) fn right_inverse(&self) -> &[Vec<R::Element>] {
+        &self.right_inverse
     }
 
     /// The basis of the domain; from number `rank` on, a basis of the kernel.
@@ -123,6 +144,7 @@ impl<'r, R: Ring> Smith<'r, R> {
         let at = self.rank;
         self.matrix.swap(at, row);
         self.left.swap(at, row);
+        self.left_inverse.swap(at, row);
         self.matrix.iter_mut().for_each(|values| values.swap(at, column));
         self.right.swap(at, column);
         self.right_inverse.swap(at, column);
@@ -130,6 +152,7 @@ impl<'r, R: Ring> Smith<'r, R> {
 
     fn add_row(&mut self, to: usize, from: usize, factor: &R::Element) -> Result<(), Overflow> {
         add(self.ring, &mut self.matrix, to, from, factor)?;
+        add(self.ring, &mut self.left_inverse, to, from, factor)?;
         add(self.ring, &mut self.left, from, to, &self.ring.negate(factor)?)
     }
 

@@ -13,7 +13,7 @@ pub(crate) fn of_soup(soup: Soup) -> CellComplex {
 }
 
 /// The complex of simplices, one a line.
-fn of_text(text: &str) -> CellComplex {
+pub(crate) fn of_text(text: &str) -> CellComplex {
     of_soup(read_bytes(text.as_bytes(), "test.simplices", &ReadOptions::default()).unwrap().0)
 }
 
@@ -23,7 +23,7 @@ fn of_file(name: &str) -> CellComplex {
 }
 
 /// Words of one-digit vertices.
-fn of_words(words: &str) -> CellComplex {
+pub(crate) fn of_words(words: &str) -> CellComplex {
     let line = |word: &str| word.chars().map(|digit| digit.to_string()).collect::<Vec<_>>().join(" ");
     of_text(&words.split_whitespace().map(line).collect::<Vec<_>>().join("\n"))
 }
@@ -37,7 +37,7 @@ pub(crate) fn over(complex: &CellComplex, over: Coefficients) -> Homology {
 }
 
 /// Checks Betti numbers and torsion, dimension by dimension, and over fields what follows by universal coefficients.
-fn check(complex: &CellComplex, betti: &[usize], torsion: &[&[u32]]) {
+pub(crate) fn check(complex: &CellComplex, betti: &[usize], torsion: &[&[u32]]) {
     let found = over(complex, Coefficients::Integers);
     assert_eq!(found.betti, betti);
     let text = |factors: &[u32]| factors.iter().map(|&factor| factor.into()).collect::<Vec<_>>();
@@ -56,7 +56,7 @@ fn check(complex: &CellComplex, betti: &[usize], torsion: &[&[u32]]) {
     }
 }
 
-fn without_torsion(complex: &CellComplex, betti: &[usize]) {
+pub(crate) fn without_torsion(complex: &CellComplex, betti: &[usize]) {
     check(complex, betti, &vec![&[][..]; betti.len()]);
 }
 

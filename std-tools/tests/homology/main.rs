@@ -9,3 +9,4 @@ mod betti;
 mod cycles;
 mod known;
 mod oracle;
+mod spaces;
