@@ -289,6 +289,8 @@ impl Samples {
         let [of_a, of_b, of_c] = [[b, c], [c, a], [a, b]].map(|[p, q]| area.abs() / (p[0] - q[0]).hypot(p[1] - q[1]));
         let span = |axis: usize| (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
         let ((left, right), (top, bottom)) = (span(0), span(1));
+        // A mark on a face is seen, and not that face.
+        let before = if face_is_mark { 0.25 } else { 0.0 };
         // How much of b and of c is in a point: linear in x along a row.
         let (step_b, step_c) = ((c[1] - a[1]) / area, -(b[1] - a[1]) / area);
         for row in self.rows(top, bottom) {
@@ -310,7 +312,7 @@ impl Samples {
                 if at_b < 0.0 || at_c < 0.0 || at_b + at_c > 1.0 {
                     continue;
                 }
-                let depth = a[2] + at_b * (b[2] - a[2]) + at_c * (c[2] - a[2]);
+                let depth = a[2] + at_b * (b[2] - a[2]) + at_c * (c[2] - a[2]) + before;
                 let at = row * self.width + column;
                 if depth <= self.samples[at].depth && !face_is_mark {
                     continue;

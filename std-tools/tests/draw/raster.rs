@@ -128,6 +128,9 @@ fn pixels_have_the_colours_of_what_is_nearest() {
     // The mark is behind, and shines through.
     assert_eq!(at(&marked, 50, 50), mixed([0, 0, 0], [200, 100, 50], 0.45));
     assert_eq!(at(&marked, 50, 20), [200, 100, 50]);
+    let mut on_top = square();
+    on_top.faces.push(Face { colour: [10, 20, 30], is_mark: true, ..face([0, 1, 2]) });
+    assert_eq!(at(&pixels(&on_top, SIZE).0, 70, 50), [10, 20, 30], "a mark on a face is seen");
     let mut hidden = square();
     hidden.dots.push(Dot { at: 4, colour: [0, 0, 0], radius: 10.0, is_mark: false });
     assert_eq!(pixels(&hidden, SIZE).0, plain, "what is no mark and hidden is not seen");
