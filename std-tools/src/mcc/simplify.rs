@@ -3,7 +3,7 @@
 //! What is queued is not a pair but its *pivot*: the (i+1)-cell that is bounded by at most two i-cells (first instance), or the
 //! i-cell that bounds at most two (i+1)-cells (second instance). Which of the two neighbours goes with it is decided when the
 //! pivot comes up. Entries are never taken out: one that comes up is looked at anew, thrown away if its pivot is none any
-//! more, put back if it costs more by now, and done otherwise.
+//! more, put back if it costs more by now, and done otherwise. `queue` has the entries, `batch` the rounds.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,7 +41,7 @@ pub enum Types {
 /// How far costs are told apart: pairs whose costs are not go by number, which is along the complex.
 ///
 /// A coarser order is faster, because cells that are near lie near in memory, and because fewer costs grow into another class
-/// while they wait. In dimension 3 and more it ends with fewer cells too: see [`simplify`]. The errors that are recorded are
+/// while they wait. In dimension 3 and more it ends with fewer cells too: see [`simplify()`]. The errors that are recorded are
 /// exact all the same.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Precision {
@@ -105,8 +105,19 @@ pub struct SimplifyReport {
 
 /// Simplifies a complex, and returns the multi-resolution complex of what was done.
 ///
-/// The result is the same on any number of threads. Cost: a search of the queue and an operator for each simplification; costs
-/// of all pivots at the start are computed and sorted in parallel, and so is each round of a batch.
+/// The result is the same on any number of threads. Cost: a place in the queue and an operator for each simplification, some
+/// 1 µs on surfaces and 1.2 to 1.6 µs on 0.1 to 2 million tetrahedra, one thread; 2.5 µs in batches. Costs of all pivots at the
+/// start are computed in parallel, and so are those of the larger rounds of a batch.
+///
+/// # What is left
+///
+/// In dimension 2, as many cells as the Betti numbers add up to. In dimension 3, one vertex and no 3-cell, or one for each
+/// component, but pairs of 1- and 2-cells beyond the homology: each 1-cell bounds three 2-cells or more, or appears twice, and
+/// each 2-cell has three 1-cells or more, so no operator is feasible. How many depends on the order. They are left when cells
+/// of like size grow everywhere and meet as the walls of a foam do, as by [`Extent`](super::Extent), not when one grows at a
+/// time: fields, lengths and [`Free`](super::Free) leave next to none. Of 493,638 cells of a bracket with Betti numbers 1, 9, 0
+/// there are left, step by step by the extent, 2090 in the exact order, 476 by powers of 2, 96 by powers of 4, 30 by powers
+/// of 16; in batches 1178, for these have to grow everywhere; by a coordinate 10.
 pub fn simplify<C: Criterion + ?Sized>(
     mut complex: CellComplex,
     criterion: &mut C,
