@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let folder = tempfile::tempdir()?;
     match words[..] {
-        ["alone", file, max_dim] => return alone(Path::new(file), max_dim.parse()?),
+        ["alone", file, max_dim] => alone(Path::new(file), max_dim.parse()?),
         ["rips", count, radius, max_dim] => {
             measure(&rips(folder.path(), count.parse()?, radius.parse()?, max_dim.parse()?)?)
         }

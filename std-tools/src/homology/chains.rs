@@ -125,17 +125,17 @@ impl<C: Relations + Sync> Simplices<'_, C> {
     }
 
     /// By the children of the simplices in the dimension below, if the file has these in 32 bits.
-    fn from_tree(&self, dim: Dim, below: Option<&Level<'_>>) -> Option<Level<'_>> {
+    fn of_tree(&self, dim: Dim, below: Option<&Level<'_>>) -> Option<Level<'_>> {
         let section = |kind| self.0.container().section(kind).map(|section| section.column);
         let Column::U32(child_offsets) = section(SectionKind::ChildOffsets)? else { return None };
         match section(SectionKind::LastVertices)? {
-            Column::U16(last_vertices) => self.from_families(dim, below, child_offsets, last_vertices),
-            Column::U32(last_vertices) => self.from_families(dim, below, child_offsets, last_vertices),
+            Column::U16(last_vertices) => self.of_families(dim, below, child_offsets, last_vertices),
+            Column::U32(last_vertices) => self.of_families(dim, below, child_offsets, last_vertices),
             _ => None,
         }
     }
 
-    fn from_families<L: Index>(
+    fn of_families<L: Index>(
         &self,
         dim: Dim,
         below: Option<&Level<'_>>,
@@ -156,7 +156,7 @@ impl<C: Relations + Sync> Simplices<'_, C> {
         }
         if dim > 1 {
             let computed =
-                if below.is_none() { self.from_families(dim - 1, None, child_offsets, last_vertices) } else { None };
+                if below.is_none() { self.of_families(dim - 1, None, child_offsets, last_vertices) } else { None };
             let below = below.or(computed.as_ref())?;
             let families =
                 Families { child_offsets, last_vertices, parents: parents.clone(), parent_rows: &below.faces };
@@ -189,7 +189,7 @@ impl<C: Relations + Sync> Chains for Simplices<'_, C> {
             let rows = Rows::Even(self.0.num_vertices(), 0);
             return Level { rows, faces: Cow::default(), first: 0, coefficients: None };
         }
-        self.stored(dim).or_else(|| self.from_tree(dim, below)).unwrap_or_else(|| self.by_facets(dim))
+        self.stored(dim).or_else(|| self.of_tree(dim, below)).unwrap_or_else(|| self.by_facets(dim))
     }
 }
 

@@ -327,7 +327,7 @@ impl<'r, R: Ring> Morse<'r, R> {
         }
         let mut chain = BTreeMap::new();
         self.push_down(dim, left, &mut chain)?;
-        Ok(chain.into_iter().map(|(cell, value)| Ok((cell, self.ring.negate(&value)?))).collect::<Result<_, _>>()?)
+        chain.into_iter().map(|(cell, value)| Ok((cell, self.ring.negate(&value)?))).collect()
     }
 
     /// A chain of critical cells with such multiples of cells that went with a face that no cell is left on its boundary that

@@ -256,11 +256,9 @@ fn find<R: Ring>(
         let (form, columns) = boundaries(ring, dim, below.take(), &matching, above.is_some(), watch)?;
         found.forms.push(form);
         found.critical.push(matching.critical.len());
-        if let Some((above, gone_above)) = above.as_ref().zip(upper.first()) {
-            if !matching.critical.is_empty() {
-                let cochains = Cochains::new(ring, all[dim], &matching, above, watch)?;
-                below = Some(Below::new(cochains, above, gone_above, columns));
-            }
+        if let Some((above, gone_above)) = above.as_ref().zip(upper.first()).filter(|_| !matching.critical.is_empty()) {
+            let cochains = Cochains::new(ring, all[dim], &matching, above, watch)?;
+            below = Some(Below::new(cochains, above, gone_above, columns));
         }
         *gone_here = Bits::default();
         level = above;
