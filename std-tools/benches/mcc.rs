@@ -296,6 +296,7 @@ fn table_two(name: &str, mcc: Mcc<'_>, coordinates: &Coordinates) -> Result<Vec<
 
 /// A box around the middle that holds about a share of the points, if they are spread evenly along the axes, moved by a part of
 /// its side along the first axis.
+#[expect(clippy::cast_possible_truncation, reason = "a place in a list")]
 fn middle(coordinates: &Coordinates, share: f64, by: f64) -> AxisBox {
     let dim = coordinates.dim;
     let values: Vec<f64> = match &coordinates.values {
@@ -324,6 +325,7 @@ fn grouped(number: usize) -> String {
 }
 
 /// How many a second, to three digits.
+#[expect(clippy::cast_possible_truncation, reason = "fewer than 2^53 a second")]
 fn rate(count: usize, seconds: f64) -> String {
     let rate = count as f64 / seconds.max(1e-9);
     let unit = 10_f64.powf((rate.max(1.0).log10().floor() - 2.0).max(0.0));

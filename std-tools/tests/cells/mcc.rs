@@ -129,7 +129,7 @@ proptest! {
             prop_assert_eq!(mcc.close(&mut marks), Some(closed.len()));
             // The least closed set: it is the one of the definition, of which none can be left out.
             prop_assert_eq!(members(&mcc, &marks), closed.iter().copied().collect::<Vec<_>>());
-            let moved = front.move_to(&mut marks).unwrap();
+            let moved = front.move_to(&marks).unwrap();
             prop_assert!(moved.refined + moved.coarsened > 0 || front.num_applied() == closed.len());
             front.complex().check().unwrap();
             assert_same_homology(&homology, front.complex());
