@@ -238,6 +238,10 @@ impl<'a> Front<'a> {
     fn refine(&mut self, number: usize) -> Result<(), BadRefinement> {
         let bad = |error| BadRefinement { refinement: number, error };
         let view = self.mcc.refinement(number).ok_or(bad(Infeasible::NoSuchCell(CellId::new(0))))?;
+        // A pair without neighbours could be of any dimension.
+        if view.dim + 1 >= self.mcc.num_dims() {
+            return Err(bad(Infeasible::CannotMake(view.low)));
+        }
         self.complex.refine(&view, &mut self.room).map_err(bad)
     }
 
