@@ -255,7 +255,7 @@ impl Args {
         chains: &impl Chains,
         options: &GeneratorOptions<'_>,
     ) -> anyhow::Result<(Homology, Option<Vec<Vec<Generator>>>)> {
-        let found = progress::part_of_any_thread("computing homology", |progress| {
+        let found = progress::part_of("computing homology", |progress| {
             let mut options = options.homology;
             options.limits.progress = progress;
             homology(chains, &options)
@@ -263,7 +263,7 @@ impl Args {
         if !(self.generators || self.cocycles || self.shorten || self.output.is_some()) || found.stopped.is_some() {
             return Ok((found, None));
         }
-        let result = progress::part_of_any_thread("finding generators", |progress| {
+        let result = progress::part_of("finding generators", |progress| {
             let mut options = *options;
             options.homology.limits.progress = progress;
             generators(chains, &options)

@@ -65,22 +65,8 @@ pub(super) fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Does some work that tells how much of how much is done.
-pub(super) fn part_of<T>(what: &'static str, work: impl FnOnce(Option<&dyn Fn(u64, u64)>) -> T) -> T {
-    if !is_watched() {
-        return work(None);
-    }
-    let bars = Phases::new();
-    let result = work(Some(&|done, total| bars.step(what, done, total)));
-    bars.clear();
-    result
-}
-
-/// The same, told from any thread.
-pub(super) fn part_of_any_thread<T>(
-    what: &'static str,
-    work: impl FnOnce(Option<&(dyn Fn(u64, u64) + Sync)>) -> T,
-) -> T {
+/// Does some work that tells how much of how much is done, from any thread.
+pub(super) fn part_of<T>(what: &'static str, work: impl FnOnce(Option<&(dyn Fn(u64, u64) + Sync)>) -> T) -> T {
     if !is_watched() {
         return work(None);
     }

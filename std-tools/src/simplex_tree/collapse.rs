@@ -94,7 +94,7 @@ impl SimplexTree {
     ///
     /// # Errors
     /// [`SizeError`], which cannot be where the tree has room itself.
-    pub fn collapse_all(&mut self, progress: Option<&dyn Fn(u64, u64)>) -> Result<Collapses, SizeError> {
+    pub fn collapse_all(&mut self, progress: Option<&(dyn Fn(u64, u64) + Sync)>) -> Result<Collapses, SizeError> {
         let frozen = self.freeze();
         let vertices: Vec<u32> = self.tops.labels().collect();
         let mut run = Run::new(&frozen);

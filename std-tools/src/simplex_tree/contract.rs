@@ -118,7 +118,7 @@ impl SimplexTree {
         &mut self,
         target: usize,
         condition: LinkCondition,
-        progress: Option<&dyn Fn(u64, u64)>,
+        progress: Option<&(dyn Fn(u64, u64) + Sync)>,
     ) -> Result<Vec<Contraction>, ContractError> {
         let total = self.num_vertices().saturating_sub(target) as u64;
         let listed = self.has_label_lists();
