@@ -35,16 +35,21 @@ let chromium;
 function finish(lines, status) {
     console.log(lines);
     chromium.once("exit", () => {
-        rmSync(profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 200 });
+        try {
+            rmSync(profile, { recursive: true, force: true, maxRetries: 25, retryDelay: 200 });
+        } catch (error) {
+            console.error(`the profile of Chromium is left: ${error.message}`);
+        }
         process.exit(status);
     });
-    chromium.kill();
+    // With its children, which would go on writing to the profile.
+    process.kill(-chromium.pid, "SIGKILL");
 }
 
 server.listen(0, "127.0.0.1", () => {
     const query = files.map((_, number) => `file=${number}.sigc`).join("&");
     const address = `http://127.0.0.1:${server.address().port}/page.html?${query}`;
     const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", `--user-data-dir=${profile}`];
-    chromium = spawn("chromium", [...flags, address], { stdio: ["ignore", "ignore", "ignore"] });
+    chromium = spawn("chromium", [...flags, address], { stdio: ["ignore", "ignore", "ignore"], detached: true });
     setTimeout(() => finish("Chromium did not answer", 1), 120_000);
 });
