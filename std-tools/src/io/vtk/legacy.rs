@@ -79,7 +79,7 @@ impl File {
     }
 
     fn read_points(&mut self, source: &mut Source<'_>, count: u32, scalar: Type) -> Result<(), Fault> {
-        let is_single = matches!(scalar, Type::F32 | Type::I8 | Type::U8 | Type::I16 | Type::U16);
+        let is_single = scalar.fits_single();
         let scalars = if is_single { Scalars::F32(Vec::new()) } else { Scalars::F64(Vec::new()) };
         let mut values = Values::Points(scalars);
         self.numbers(source, scalar, 3 * u64::from(count), "as many points as the section says", &mut values)?;

@@ -65,6 +65,11 @@ impl Type {
         !matches!(self, Self::F32 | Self::F64)
     }
 
+    /// Whether every value is one of single precision.
+    const fn fits_single(self) -> bool {
+        matches!(self, Self::F32 | Self::I8 | Self::U8 | Self::I16 | Self::U16)
+    }
+
     /// The number in as many bytes as the type has.
     fn decode(self, bytes: &[u8], big_endian: bool) -> Number {
         fn number<const N: usize, T>(bytes: &[u8], big_endian: bool, from: fn([u8; N]) -> T) -> T {

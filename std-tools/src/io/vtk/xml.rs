@@ -76,9 +76,7 @@ impl Piece {
     /// Empty values for an array.
     fn values(&self, role: Role, scalar: Type) -> Values {
         match role {
-            Role::Points if matches!(scalar, Type::F64 | Type::I64 | Type::U64 | Type::I32 | Type::U32) => {
-                Values::Points(Scalars::F64(Vec::new()))
-            }
+            Role::Points if !scalar.fits_single() => Values::Points(Scalars::F64(Vec::new())),
             Role::Points => Values::Points(Scalars::F32(Vec::new())),
             Role::Labels => Values::Labels(Vec::new()),
             Role::Vertices(_) => Values::Vertices(Vec::new(), self.points),
