@@ -164,7 +164,7 @@ impl<S: Index> Cofaces<S> {
             let part = rest.split_off_mut(..next - first).unwrap_or_default();
             parts.push((range.clone(), first, rest_of_starts.split_off_mut(..range.len()).unwrap_or_default(), part));
         }
-        // Backwards: in the end each start is where it was, moved down by the cofaces behind it.
+        // Each start moves on as its cofaces are filled in, and ends where that of the next cell begins.
         parts.into_par_iter().for_each(|(range, first, starts, part)| {
             for coface in 0..above.num_cells() {
                 for cell in above.faces(coface).filter_map(|face| is_of(&range, face)) {
@@ -173,13 +173,8 @@ impl<S: Index> Cofaces<S> {
                 }
             }
         });
-        // Each start is now that of the next cell.
         starts.rotate_right(1);
         starts[0] = S::ZERO;
-        if let [.., before, last] = &mut starts[..] {
-            let _ = before;
-            *last = of::<S>(sum);
-        }
         Self { starts, cofaces }
     }
 
