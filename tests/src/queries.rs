@@ -104,7 +104,7 @@ pub fn reseal(bytes: &mut [u8]) {
     }
     let field = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]) as usize;
     let (sections, names) = (field(20), field(44));
-    let end = sections.saturating_mul(ENTRY_BYTES).saturating_add(HEADER_BYTES + names).min(bytes.len());
+    let end = sections.saturating_mul(ENTRY_BYTES).saturating_add(names).saturating_add(HEADER_BYTES).min(bytes.len());
     bytes[CHECKSUM].fill(0);
     let checksum = crc32(0, &bytes[..end]);
     bytes[CHECKSUM].copy_from_slice(&checksum.to_le_bytes());
