@@ -360,7 +360,7 @@ impl<'a> Mcc<'a> {
         let low = u32::try_from(self.num_base_cells() + 2 * number).ok()?;
         let Arcs { range, .. } = self.arcs(self.arrays.offsets, number);
         let splits = self.arrays.splits.get(number).copied()?;
-        let word = |place: usize| self.arrays.arcs.get(range.start + place).map_or(0, |&word| word as usize);
+        let word = |place| self.arrays.arcs.get(range.start.saturating_add(place)).map_or(0, |&word| word as usize);
         let (skipped, lengths) = if splits == LONG_SPLITS {
             (3, [word(0), word(1), word(2)])
         } else {
