@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
 use crate::build::levels::Chunks;
-use crate::build::local::Level;
+use crate::build::trie::{Bucket, Slices};
 use crate::build::{Meter, Phase, SigArrays, facets, index};
 
 /// The arrays of the faces, without co-boundary relations, and how the simplices of each dimension are listed (one byte
@@ -42,99 +42,62 @@ pub(super) fn assemble<I: Index>(chunks: Chunks, meter: &Meter<'_>) -> (SigArray
     (arrays, listed)
 }
 
-/// Copies the chunks, level by level, to where they belong, and frees them.
+/// Writes the buckets to where they belong, and frees them.
 fn lay_out<I: Index>(chunks: Chunks, counts: &[usize], arrays: &mut SigArrays<I>) -> Vec<Vec<u8>> {
-    let Chunks { num_vertices, listed_vertices, mut tasks } = chunks;
     let dim = counts.len() - 1;
-    // Where the simplices of each dimension of each task go.
-    let starts: Vec<Vec<usize>> = (0..=dim).map(|p| starts(&tasks, p, arrays.first[p])).collect();
-    let (vertices, mut last_vertices) = arrays.last_vertices.split_at_mut(num_vertices);
-    for (last, vertex) in vertices.iter_mut().zip(0..) {
-        *last = vertex;
-    }
-    let (mut child_offsets, end) = arrays.child_offsets.split_at_mut(arrays.first[dim]);
+    let (child_offsets, end) = arrays.child_offsets.split_at_mut(arrays.first[dim]);
     end[0] = index(arrays.num_simplices);
-    let mut boundary = arrays.boundary.as_mut_slice();
-    let mut listed = vec![listed_vertices];
-    for p in 0..=dim {
-        let levels: Vec<Level> =
-            tasks.iter_mut().map(|levels| levels.get_mut(p).map(std::mem::take).unwrap_or_default()).collect();
-        if p > 0 {
-            listed.push(concatenate_marks(&levels, counts[p]));
+    let is_listed = |p: Dim| {
+        chunks.buckets.iter().any(|bucket: &Bucket| bucket.listed.get(p).is_some_and(|marks| !marks.is_empty()))
+    };
+    let mut listed: Vec<Vec<u8>> =
+        counts.iter().enumerate().map(|(p, &count)| vec![0; if is_listed(p) { count } else { 0 }]).collect();
+    // What is left of the arrays of each dimension.
+    let mut starts = arrays.first.clone();
+    let mut last_vertices = split(&mut arrays.last_vertices, counts.iter().copied());
+    let mut boundary = split(
+        &mut arrays.boundary,
+        counts.iter().enumerate().map(|(p, count)| if p > 0 { (p + 1) * count } else { 0 }),
+    );
+    let mut child_offsets = split(child_offsets, counts[..dim].iter().copied());
+    let mut marks: Vec<&mut [u8]> = listed.iter_mut().map(Vec::as_mut_slice).collect();
+    let jobs: Vec<_> = chunks
+        .buckets
+        .into_iter()
+        .map(|bucket| {
+            let count = |p: Dim| bucket.counts.get(p).copied().unwrap_or(0);
+            let slices = Slices {
+                starts: starts.clone(),
+                last_vertices: take(&mut last_vertices, count),
+                boundary: take(&mut boundary, |p| if p > 0 { (p + 1) * count(p) } else { 0 }),
+                child_offsets: take(&mut child_offsets, count),
+            };
+            let marks = take(&mut marks, count);
+            (0..=dim).for_each(|p| starts[p] += count(p));
+            (bucket, slices, marks)
+        })
+        .collect();
+    let arch = pulp::Arch::new();
+    jobs.into_par_iter().for_each(|(bucket, mut slices, mut marks)| {
+        // With the instructions for bits that the processor has.
+        arch.dispatch(
+            #[inline(always)]
+            || bucket.write(&mut slices),
+        );
+        for (to, from) in marks.iter_mut().zip(&bucket.listed).filter(|(_, from)| !from.is_empty()) {
+            to.copy_from_slice(from);
         }
-        let mut parts = Vec::with_capacity(levels.len());
-        for (task, level) in levels.into_iter().enumerate() {
-            parts.push(Part {
-                last_vertices: last_vertices.split_off_mut(..level.labels.len()).unwrap_or_default(),
-                boundary: boundary.split_off_mut(..level.labels.len() * (p + 1)).unwrap_or_default(),
-                child_offsets: if p < dim {
-                    child_offsets.split_off_mut(..level.first_child.len()).unwrap_or_default()
-                } else {
-                    &mut []
-                },
-                facet_start: if p > 0 { starts[p - 1][task] } else { 0 },
-                child_start: if p < dim { starts[p + 1][task] } else { 0 },
-                level,
-            });
-        }
-        parts.into_par_iter().for_each(|part| part.write(p));
-    }
+    });
     listed
 }
 
-/// Where the simplices of dimension `dim` of each task start, if those of the first start at `first`.
-fn starts(tasks: &[Vec<Level>], dim: Dim, first: usize) -> Vec<usize> {
-    tasks
-        .iter()
-        .scan(first, |next, levels| {
-            let start = *next;
-            *next += levels.get(dim).map_or(0, |level| level.first_child.len());
-            Some(start)
-        })
-        .collect()
+/// An array in parts of the given lengths.
+fn split<T>(array: &mut [T], lens: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+    let mut rest = array;
+    lens.map(|len| rest.split_off_mut(..len).unwrap_or_default()).collect()
 }
 
-/// The marks of all tasks; nothing if there are none.
-fn concatenate_marks(levels: &[Level], count: usize) -> Vec<u8> {
-    if levels.iter().all(|level| level.listed.is_empty()) {
-        return Vec::new();
-    }
-    let mut marks = Vec::with_capacity(count);
-    for level in levels {
-        marks.extend_from_slice(&level.listed);
-        if level.listed.is_empty() {
-            marks.resize(marks.len() + level.labels.len(), 0);
-        }
-    }
-    marks
-}
-
-/// One level of one task, and the parts of the arrays that it fills.
-struct Part<'a, I> {
-    level: Level,
-    last_vertices: &'a mut [u32],
-    boundary: &'a mut [I],
-    child_offsets: &'a mut [I],
-    /// The id of the first simplex of the level below, and of the level above, of the task.
-    facet_start: usize,
-    child_start: usize,
-}
-
-impl<I: Index> Part<'_, I> {
-    fn write(self, dim: Dim) {
-        self.last_vertices.copy_from_slice(&self.level.labels);
-        for (offset, &child) in self.child_offsets.iter_mut().zip(&self.level.first_child) {
-            *offset = index(self.child_start + child as usize);
-        }
-        if dim > 0 {
-            let rows = self.boundary.chunks_exact_mut(dim + 1);
-            for ((row, facets), &label) in rows.zip(self.level.facets.chunks_exact(dim)).zip(&self.level.labels) {
-                // Right for edges; the others wait for the level below.
-                row[0] = index(label as usize);
-                for (entry, &facet) in row[1..].iter_mut().zip(facets) {
-                    *entry = index(self.facet_start + facet as usize);
-                }
-            }
-        }
-    }
+/// Takes as much as `count` tells, by dimension, off the start of each array; what is shorter is left as it is.
+fn take<'a, T>(arrays: &mut [&'a mut [T]], count: impl Fn(Dim) -> usize) -> Vec<&'a mut [T]> {
+    arrays.iter_mut().enumerate().map(|(p, rest)| rest.split_off_mut(..count(p)).unwrap_or_default()).collect()
 }

@@ -1,40 +1,22 @@
-//! Deals the listed words out to their vertices, and the vertices to tasks that find all faces ([`super::local`]).
+//! Finds all faces, one bucket of vertices a task ([`super::trie`]).
 
 use rayon::prelude::*;
 
-use crate::build::local::{Level, Local};
+use crate::build::trie::{Bucket, Finder};
 use crate::build::words::Words;
 use crate::build::{BuildError, Limit, Meter, Phase};
 
-/// Tails that a task has at least, unless there are fewer.
-const MIN_TASK: usize = 1 << 12;
-/// Tasks for each thread.
-const TASKS_PER_THREAD: usize = 64;
-
-/// All faces but the vertices, as found by the tasks: consecutive ranges of least vertices.
+/// All faces, as found by the tasks: consecutive ranges of least vertices.
 pub(super) struct Chunks {
-    pub(super) num_vertices: usize,
-    /// How each vertex is listed; empty if none is.
-    pub(super) listed_vertices: Vec<u8>,
-    /// For each task the faces by dimension, from 0.
-    pub(super) tasks: Vec<Vec<Level>>,
+    pub(super) buckets: Vec<Bucket>,
 }
 
 impl Chunks {
     /// The number of simplices of each dimension.
     pub(super) fn counts(&self) -> Vec<usize> {
-        let mut counts = Vec::new();
-        if self.num_vertices > 0 {
-            counts.push(self.num_vertices);
-        }
-        for dim in 1.. {
-            let count = self.tasks.iter().filter_map(|levels| levels.get(dim)).map(|level| level.labels.len()).sum();
-            if count == 0 {
-                break;
-            }
-            counts.push(count);
-        }
-        counts
+        let dims = self.buckets.iter().map(|bucket| bucket.counts.len()).max().unwrap_or(0);
+        let count = |dim: usize| self.buckets.iter().filter_map(|bucket| bucket.counts.get(dim)).sum();
+        (0..dims).map(count).collect()
     }
 
     /// The number of simplices.
@@ -43,81 +25,124 @@ impl Chunks {
     }
 }
 
-/// Finds all faces of the listed words on `num_vertices` vertices.
+/// Finds all faces of the listed words; `is_unused` tells which vertices are in no word, and kept.
 pub(super) fn find(
     words: &Words,
-    num_vertices: usize,
-    listed_vertices: Vec<u8>,
+    is_unused: impl Fn(u32) -> bool + Sync,
     limit: &Limit,
     meter: &Meter<'_>,
 ) -> Result<Chunks, BuildError> {
-    let tails = Tails::new(words, num_vertices);
-    let stage = meter.stage(Phase::Levels, num_vertices);
-    limit.reserve(num_vertices)?;
-    let tasks: Result<Vec<_>, _> = tails
-        .tasks()
+    let stage = meter.stage(Phase::Levels, words.num_vertices());
+    let arch = pulp::Arch::new();
+    let buckets: Result<Vec<_>, _> = (0..words.num_buckets())
         .into_par_iter()
-        .map_init(Local::default, |local, vertices| {
-            let mut levels = Vec::new();
+        .map_init(Finder::new, |finder, number| {
+            let vertices = words.vertices(number);
+            words.gather(number, &mut finder.flat);
             let mut reservation = limit.reservation();
-            stage.add(vertices.len());
-            for vertex in vertices {
-                for &place in tails.of(vertex) {
-                    let (tail, mark) = words.tail(place);
-                    local.push_tail(tail, mark);
-                }
-                local.add_vertex(&mut levels, &mut reservation)?;
-            }
-            for level in &mut levels {
-                level.finish();
-            }
+            let count = vertices.len();
+            // With the instructions for bits that the processor has.
+            let bucket = arch.dispatch(
+                #[inline(always)]
+                || finder.find(vertices, &is_unused, &mut reservation),
+            )?;
             reservation.settle()?;
-            Ok(levels)
+            stage.add(count);
+            Ok(bucket)
         })
         .collect();
-    Ok(Chunks { num_vertices, listed_vertices, tasks: tasks? })
+    Ok(Chunks { buckets: buckets? })
 }
 
-/// For each vertex the places in the listed words where it stands, but not as the last.
-struct Tails {
-    starts: Vec<usize>,
-    places: Vec<usize>,
-}
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
 
-impl Tails {
-    fn new(words: &Words, num_vertices: usize) -> Self {
-        let mut starts = vec![0_usize; num_vertices + 2];
-        words.for_each_tail(|vertex, _| starts[vertex as usize + 2] += 1);
-        for vertex in 2..starts.len() {
-            starts[vertex] += starts[vertex - 1];
-        }
-        // Shifted by one, so that filling in moves each start to where it belongs.
-        let mut places = vec![0; starts[num_vertices + 1]];
-        words.for_each_tail(|vertex, place| {
-            let next = &mut starts[vertex as usize + 1];
-            places[*next] = place;
-            *next += 1;
-        });
-        starts.pop();
-        Self { starts, places }
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::build::local::{EVEN, ODD, UNUSED};
+    use crate::build::order::number_vertices;
+    use crate::build::{BuildOptions, SigArrays, VertexOrder, assemble, words};
+    use crate::soup::{Labels, Soup};
+
+    /// The arrays of the faces of a soup without unused vertices, by buckets of about so many tails, and how they are
+    /// listed.
+    fn faces(soup: &Soup, bucket: usize) -> (SigArrays<u32>, Vec<Vec<u8>>) {
+        let meter = Meter::new(None);
+        let used = words::check(&soup.simplices, soup.labels.len()).unwrap();
+        let order = number_vertices(&soup.labels, None, &soup.simplices, &used, true, VertexOrder::Input).unwrap();
+        let words = words::sort(soup.simplices.clone(), &order, bucket, &meter).unwrap();
+        let limit = Limit::new(soup, &BuildOptions::default()).unwrap();
+        let chunks = find(&words, |vertex| !used[vertex as usize], &limit, &meter).unwrap();
+        assemble::assemble(chunks, &meter)
     }
 
-    fn of(&self, vertex: usize) -> &[usize] {
-        &self.places[self.starts[vertex]..self.starts[vertex + 1]]
-    }
-
-    /// Ranges of vertices with about the same number of tails.
-    fn tasks(&self) -> Vec<std::ops::Range<usize>> {
-        let size = (self.places.len() / (TASKS_PER_THREAD * rayon::current_num_threads())).max(MIN_TASK);
-        let mut tasks = Vec::new();
-        let mut start = 0;
-        for end in 1..self.starts.len() {
-            // A vertex counts as a tail: isolated ones are work too.
-            if self.starts[end] - self.starts[start] + (end - start) >= size || end + 1 == self.starts.len() {
-                tasks.push(start..end);
-                start = end;
+    /// All faces as words, by dimension, then lexicographically.
+    fn all_faces(simplices: &[Vec<u32>]) -> Vec<Vec<u32>> {
+        let mut faces: BTreeSet<(usize, Vec<u32>)> = BTreeSet::new();
+        for simplex in simplices {
+            for mask in 1_u32..1 << simplex.len() {
+                let kept = (0..simplex.len()).filter(|place| mask >> place & 1 == 1);
+                let mut face: Vec<u32> = kept.map(|place| simplex[place]).collect();
+                face.sort_unstable();
+                faces.insert((face.len(), face));
             }
         }
-        tasks
+        faces.into_iter().map(|(_, face)| face).collect()
+    }
+
+    proptest! {
+        /// Vertices with more neighbours than a mask has bits among them, in buckets of one vertex and of all.
+        #[test]
+        fn faces_are_all_subsets(
+            mut simplices in prop::collection::vec(prop::collection::vec(0_u32..150, 1..6), 0..40),
+            hubs in prop::collection::vec(prop::collection::vec(50_u32..150, 0..4), 0..90),
+            bucket in 0_usize..300,
+        ) {
+            simplices.extend(hubs.into_iter().map(|mut link| { link.push(49); link }));
+            let mut soup = Soup::new(Labels::Numbered(150), true);
+            for simplex in &mut simplices {
+                let mut seen = BTreeSet::new();
+                simplex.retain(|&vertex| seen.insert(vertex));
+                soup.push(simplex);
+            }
+            let (arrays, listed) = faces(&soup, bucket);
+            let listed_or_unused: Vec<Vec<u32>> = simplices.iter().cloned().chain((0..150).map(|v| vec![v])).collect();
+            let words = all_faces(&listed_or_unused);
+            prop_assert_eq!(arrays.num_simplices, words.len());
+            let find = |word: &[u32]| words.binary_search_by_key(&(word.len(), word), |w| (w.len(), w)).unwrap();
+            for dim in 0..arrays.first.len() {
+                for (number, id) in arrays.ids(dim).enumerate() {
+                    let word = &words[id];
+                    prop_assert_eq!(word.len(), dim + 1);
+                    prop_assert_eq!(arrays.last_vertices[id], word[dim]);
+                    for place in (0..=dim).filter(|_| dim > 0) {
+                        let mut facet = word.clone();
+                        facet.remove(place);
+                        prop_assert_eq!(arrays.facets(dim)[number * (dim + 1) + place] as usize, find(&facet));
+                    }
+                    if dim + 1 < arrays.first.len() {
+                        let starts = |w: &Vec<u32>| w.len() == dim + 2 && &w[..=dim] >= word.as_slice();
+                        let child = words.iter().position(starts);
+                        let end = arrays.ids(dim + 1).end;
+                        prop_assert_eq!(arrays.child_offsets[id] as usize, child.unwrap_or(end));
+                    }
+                    // Once for each listing of the same vertices: the parity of the permutation that sorts it.
+                    let same = simplices.iter().filter(|simplex| {
+                        simplex.len() == word.len() && simplex.iter().all(|vertex| word.contains(vertex))
+                    });
+                    let mut mark = same.fold(0, |mark, simplex| {
+                        let pairs = (0..simplex.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+                        let inversions = pairs.filter(|&(a, b)| simplex[a] > simplex[b]).count();
+                        mark | if inversions % 2 == 0 { EVEN } else { ODD }
+                    });
+                    if dim == 0 && !simplices.iter().flatten().any(|vertex| vertex == &word[0]) {
+                        mark = UNUSED;
+                    }
+                    prop_assert_eq!(listed[dim].get(number).copied().unwrap_or(0), mark);
+                }
+            }
+        }
     }
 }

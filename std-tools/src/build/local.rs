@@ -1,12 +1,9 @@
-//! All faces whose least vertex is v, found from the listed simplices that contain v: the small problem into which the
-//! construction falls apart.
+//! All faces whose least vertex is v, where v has more neighbours than a bit mask has room for ([`super::trie`]).
 //!
 //! What follows v in a listed word is a *tail*. The faces of v are a trie: below v stand the vertices of the tails, and
-//! below any node the vertices that follow it in some tail. The trie is walked level by level. Vertices are *letters*
-//! here, positions among the neighbours of v, so that the children of a node are a bit mask and the number of a child is
-//! a count of bits; nodes of vertices with more neighbours than bits are told apart by sorting. The facets that keep v
-//! are nodes of the same trie, hence known at once: facet i of a child with letter y is the child y of facet i of the
-//! parent.
+//! below any node the vertices that follow it in some tail. The trie is walked level by level, and the children of a level
+//! are found by sorting. Vertices are *letters* here, positions among the neighbours of v. The facets that keep v are nodes
+//! of the same trie, hence known at once: facet i of a child with letter y is the child y of facet i of the parent.
 
 use rayon::slice::ParallelSliceMut;
 
@@ -19,13 +16,10 @@ pub(super) const ODD: u8 = 2;
 /// Mark of a vertex that is kept though unused.
 pub(super) const UNUSED: u8 = 4;
 
-/// The largest number of neighbours for which nodes keep their children as a bit mask.
-const MASK_BITS: usize = 64;
-
 /// Keys from which on sorting them is split among threads.
 const PARALLEL_SORT: usize = 1 << 15;
 
-/// The simplices of one dimension whose least vertices are a range of ids. Numbers in it are relative to that range.
+/// The simplices of one dimension with a least vertex. Numbers in it count from the first of these.
 #[derive(Default)]
 pub(super) struct Level {
     /// The last vertex of each simplex (not kept for the vertices themselves).
@@ -40,18 +34,17 @@ pub(super) struct Level {
 
 impl Level {
     fn mark(&mut self, node: usize, mark: u8) {
-        if self.listed.len() < self.labels.len() {
-            self.listed.resize(self.labels.len(), 0);
-        }
-        self.listed[node] |= mark;
+        add_mark(&mut self.listed, node, mark);
     }
+}
 
-    /// To be called when the level has all its simplices.
-    pub(super) fn finish(&mut self) {
-        if !self.listed.is_empty() {
-            self.listed.resize(self.labels.len(), 0);
-        }
+/// Adds a mark to that of number `number`; marks that are not there are 0.
+#[inline]
+pub(super) fn add_mark(marks: &mut Vec<u8>, number: usize, mark: u8) {
+    if marks.len() <= number {
+        marks.resize(number + 1, 0);
     }
+    marks[number] |= mark;
 }
 
 /// A node, and the part of a tail that goes on below it.
@@ -69,8 +62,6 @@ struct Visit {
 struct Nodes {
     /// The last letter of each node.
     letters: Vec<u32>,
-    /// The letters of the children of each node as bits, where there are few enough neighbours.
-    masks: Vec<u64>,
     /// The first child of each node, and the end of the last node's children.
     first_child: Vec<u32>,
     /// Whether this is v alone, whose children are all letters.
@@ -86,13 +77,8 @@ impl Nodes {
         }
         let node = node as usize;
         let first = self.first_child[node];
-        match self.masks.get(node) {
-            Some(mask) => first + (mask & ((1 << letter) - 1)).count_ones(),
-            None => {
-                let siblings = &below[first as usize..self.first_child[node + 1] as usize];
-                first + narrow(siblings.partition_point(|&sibling| sibling < letter))
-            }
-        }
+        let siblings = &below[first as usize..self.first_child[node + 1] as usize];
+        first + narrow(siblings.partition_point(|&sibling| sibling < letter))
     }
 }
 
@@ -103,8 +89,6 @@ pub(super) struct Local {
     names: Names,
     /// The letters of all tails.
     letters: Vec<u32>,
-    /// For each of them the bits of it and of those that follow in its tail, where there are few enough neighbours.
-    masks: Vec<u64>,
     nodes: Vec<Nodes>,
     /// First the tails below v, then what is left of them below the nodes of one level.
     visits: Vec<Visit>,
@@ -187,17 +171,6 @@ impl Local {
         for letter in &mut self.letters {
             *letter = self.names.slots[*letter as usize].1;
         }
-        self.masks.clear();
-        if self.neighbours.len() <= MASK_BITS {
-            self.masks.resize(self.letters.len(), 0);
-            for visit in &self.visits {
-                let mut mask = 0;
-                for position in (visit.next as usize..visit.end as usize).rev() {
-                    mask |= 1 << self.letters[position];
-                    self.masks[position] = mask;
-                }
-            }
-        }
     }
 
     /// Finds the children of the nodes of level `dim` from the visits: how many, their letters, and where the children
@@ -205,25 +178,12 @@ impl Local {
     fn find_children(&mut self, dim: usize) -> usize {
         node_level(&mut self.nodes, dim + 1);
         let [here, below] = &mut self.nodes[dim..dim + 2] else { unreachable!("two levels") };
-        here.masks.clear();
         here.first_child.clear();
         here.first_child.push(0);
         below.letters.clear();
         if here.has_all {
             below.letters.extend((0..).take(self.neighbours.len()));
             here.first_child.push(narrow(below.letters.len()));
-        } else if self.neighbours.len() <= MASK_BITS {
-            here.masks.resize(here.letters.len(), 0);
-            for visit in &self.visits {
-                here.masks[visit.node as usize] |= self.masks[visit.next as usize];
-            }
-            for mut mask in here.masks.iter().copied() {
-                while mask != 0 {
-                    below.letters.push(mask.trailing_zeros());
-                    mask &= mask - 1;
-                }
-                here.first_child.push(narrow(below.letters.len()));
-            }
         } else {
             sort_children(&mut self.keys, &self.visits, &self.letters);
             let mut keys = self.keys.iter().copied().peekable();

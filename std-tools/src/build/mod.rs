@@ -2,9 +2,10 @@
 //!
 //! A [`Soup`] comes in, [`Built`] goes out to the encoder. In between, one step a file:
 //!
-//! 1. `order` numbers the vertices, `words` rewrites every listed simplex as a sorted word of those numbers;
-//! 2. `levels` finds all faces with a given least vertex, one small problem a vertex (`local`), and `assemble` lays
-//!    them end to end: from here on a simplex is its number, and its facets are known;
+//! 1. `order` numbers the vertices, `words` rewrites every listed simplex as a sorted word of those numbers and deals the
+//!    words out to ranges of vertices;
+//! 2. `levels` finds all faces with a given least vertex, one small problem a vertex (`trie`, and `local` for vertices with
+//!    many neighbours), and `assemble` lays them end to end: from here on a simplex is its number, and its facets are known;
 //! 3. `clusters` finds the partial co-boundary relations C\*, and `lists` writes them as pointers, lists and flags.
 //!
 //! A [simplex tree](crate::frozen::FrozenTree) skips the first two steps: `complete` reads the facets off it (`facets`).
@@ -27,6 +28,7 @@ mod lists;
 mod local;
 mod order;
 mod report;
+mod trie;
 mod words;
 
 use std::collections::BTreeSet;
@@ -239,9 +241,6 @@ impl<I: Index> SigArrays<I> {
 
     /// The same arrays with wider indices.
     fn widen(self) -> SigArrays<u64> {
-        let widen = |values: Vec<I>| -> Vec<u64> {
-            values.into_iter().map(|value| if value == I::STOP { u64::STOP } else { value.to_usize() as u64 }).collect()
-        };
         SigArrays {
             first: self.first,
             num_simplices: self.num_simplices,
@@ -253,6 +252,11 @@ impl<I: Index> SigArrays<I> {
             last_vertices: self.last_vertices,
         }
     }
+}
+
+/// Wider indices.
+fn widen<I: Index>(values: Vec<I>) -> Vec<u64> {
+    values.into_iter().map(|value| if value == I::STOP { u64::STOP } else { value.to_usize() as u64 }).collect()
 }
 
 /// The arrays at the width that the complex needs in memory; a file may store them narrower.
@@ -301,7 +305,7 @@ pub(crate) fn sorted_words(soup: &Soup, options: &BuildOptions<'_>) -> Result<Ve
     Limit::new(soup, options)?;
     let keep_unused = *declared && options.unused == Unused::Keep;
     let order = number_vertices(labels, coordinates.as_ref(), simplices, &used, keep_unused, options.order)?;
-    let words = words::sort(simplices.clone(), &order, &Meter::new(options.progress))?;
+    let words = words::sort(simplices.clone(), &order, words::BUCKET, &Meter::new(options.progress))?;
     let mut levels: Vec<BTreeSet<Vec<u32>>> = Vec::new();
     let vertices = (0..narrow(order.num_vertices())).map(|id| vec![id]);
     for word in words.iter().map(<[u32]>::to_vec).chain(vertices) {
@@ -348,9 +352,8 @@ fn find_faces(soup: Soup, options: &BuildOptions<'_>, meter: &Meter<'_>) -> Resu
     let keep_unused = declared && options.unused == Unused::Keep;
     let order = number_vertices(&labels, coordinates.as_ref(), &simplices, &used, keep_unused, options.order)?;
     let num_listed = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).sum();
-    let words = words::sort(simplices, &order, meter)?;
-    let listed_vertices = words::listed_vertices(&words, &used, &order);
-    let chunks = levels::find(&words, order.num_vertices(), listed_vertices, &limit, meter)?;
+    let words = words::sort(simplices, &order, words::BUCKET, meter)?;
+    let chunks = levels::find(&words, |id| !used[order.input(id) as usize], &limit, meter)?;
     Ok((chunks, order, num_listed, labels, coordinates))
 }
 

@@ -2,11 +2,17 @@
 //! simplices.
 
 use std::fmt;
+use std::sync::atomic::AtomicBool;
 
+use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
 use crate::build::SigArrays;
+use crate::build::facets::mark;
 use crate::build::local::{EVEN, ODD};
+
+/// Facets that are looked at by one task.
+const CHUNK: usize = 1 << 16;
 
 /// What the input held beyond its maximal simplices.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -72,11 +78,11 @@ impl Counts {
 pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec<Vec<bool>> {
     let mut tops = vec![Vec::new(); arrays.first.len()];
     for (dim, marks) in listed.iter().enumerate().filter(|(_, marks)| !marks.is_empty()) {
-        let mut is_top = vec![true; marks.len()];
-        for facet in arrays.facets(dim + 1) {
-            is_top[facet.to_usize() - arrays.first[dim]] = false;
-        }
-        tops[dim] = is_top;
+        let has_coface: Vec<AtomicBool> = marks.par_iter().map(|_| AtomicBool::new(false)).collect();
+        arrays.facets(dim + 1).par_chunks(CHUNK).for_each(|facets| {
+            facets.iter().for_each(|facet| mark(&has_coface[facet.to_usize() - arrays.first[dim]]));
+        });
+        tops[dim] = has_coface.into_par_iter().map(|mark| !mark.into_inner()).collect();
     }
     tops
 }

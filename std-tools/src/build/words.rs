@@ -1,115 +1,248 @@
-//! Listed simplices as sorted words of vertex ids, with the parity that sorting takes away.
+//! Listed simplices as sorted words of vertex ids, with the parity that sorting takes away, dealt out to *buckets*: ranges
+//! of consecutive vertices whose faces one task finds ([`super::levels`]).
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
 use sig_core::{Dim, MAX_DIM};
 
-use crate::build::local::{EVEN, ODD, UNUSED};
+use crate::build::facets::mark;
+use crate::build::local::{EVEN, ODD};
 use crate::build::order::Order;
-use crate::build::{BuildError, Meter, Phase};
+use crate::build::{BuildError, Meter, Phase, narrow};
 
-/// Rows that are sorted at a time.
-const ROWS: usize = 1 << 10;
+/// Vertex numbers that are checked or dealt out at a time, at least and at most.
+const CHUNK: Range<usize> = 1 << 16..1 << 25;
+/// Chunks of an input of any size, at most (but for very large ones).
+const MOST_CHUNKS: usize = 1 << 10;
+/// Tails in a bucket, about: what is known of it then fits a core's cache.
+pub(super) const BUCKET: usize = 1 << 13;
+/// Buckets at most.
+const MOST_BUCKETS: usize = 1 << 14;
 
-/// Ends a word that sorts the listed vertices by an even permutation. No vertex id is as large, see [`check`].
-const EVEN_END: u32 = u32::MAX - 1;
-/// Ends a word that sorts the listed vertices by an odd permutation.
-const ODD_END: u32 = u32::MAX;
-
-/// The listed simplices as words: increasing vertex ids, then [`EVEN_END`] or [`ODD_END`].
+/// The listed simplices as words, by bucket. In each bucket is every *tail* whose first vertex is in it: what is left of
+/// a word from one of its vertices on, but the last. A tail that goes on from a vertex of the same bucket is not there
+/// apart.
 pub(super) struct Words {
+    /// Vertices in a bucket, as a power of two.
+    bits: u32,
+    num_vertices: usize,
+    parts: Vec<Part>,
+}
+
+/// The words of some rows of the input.
+#[derive(Default)]
+struct Part {
+    /// The first bucket that has any.
+    first: usize,
+    /// Where those of each bucket from there on start, and the end.
+    starts: Vec<u32>,
+    /// Records: a head, then the vertices.
     flat: Vec<u32>,
 }
 
+/// A word of `len` vertices, which is a listed one if it has a `mark`, as one number in front of them.
+#[expect(clippy::cast_possible_truncation, reason = "at most 32 vertices")]
+fn head(len: usize, mark: u8) -> u32 {
+    (len as u32) << 2 | u32::from(mark)
+}
+
+/// The words in records: how each is listed, 0 of the tail of one that starts in another bucket, and its vertices.
+#[expect(clippy::cast_possible_truncation, reason = "two bits")]
+pub(super) fn records(flat: &[u32]) -> impl Iterator<Item = (u8, &[u32])> {
+    let mut rest = flat;
+    std::iter::from_fn(move || {
+        let (&head, after) = rest.split_first()?;
+        let (word, others) = after.split_at_checked((head >> 2) as usize)?;
+        rest = others;
+        Some(((head & 3) as u8, word))
+    })
+}
+
 impl Words {
-    /// The words.
+    /// The words that are listed.
     pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        self.flat.split(|&letter| letter >= EVEN_END).filter(|word| !word.is_empty())
+        let all = self.parts.iter().flat_map(|part| records(&part.flat));
+        all.filter(|&(mark, _)| mark != 0).map(|(_, word)| word)
     }
 
-    /// Every vertex with its place in the words, save those that stand last.
-    pub(super) fn for_each_tail(&self, mut visit: impl FnMut(u32, usize)) {
-        for (place, pair) in self.flat.windows(2).enumerate() {
-            if pair[0].max(pair[1]) < EVEN_END {
-                visit(pair[0], place);
+    pub(super) fn num_vertices(&self) -> usize {
+        self.num_vertices
+    }
+
+    pub(super) fn num_buckets(&self) -> usize {
+        self.num_vertices.div_ceil(1 << self.bits)
+    }
+
+    /// The vertices of a bucket.
+    pub(super) fn vertices(&self, bucket: usize) -> Range<u32> {
+        narrow(bucket << self.bits)..narrow(self.num_vertices.min((bucket + 1) << self.bits))
+    }
+
+    /// Fills `flat` with the records of a bucket.
+    pub(super) fn gather(&self, bucket: usize, flat: &mut Vec<u32>) {
+        flat.clear();
+        for part in &self.parts {
+            if let Some(&[start, end]) =
+                bucket.checked_sub(part.first).and_then(|place| part.starts.get(place..place + 2))
+            {
+                flat.extend_from_slice(&part.flat[start as usize..end as usize]);
             }
         }
-    }
-
-    /// What follows the vertex at `place` in its word; and how the word is listed if the vertex is its first, else 0.
-    pub(super) fn tail(&self, place: usize) -> (&[u32], u8) {
-        let rest = &self.flat[place + 1..];
-        let len = rest.iter().position(|&letter| letter >= EVEN_END).unwrap_or(rest.len());
-        let is_first = place.checked_sub(1).is_none_or(|before| self.flat[before] >= EVEN_END);
-        let mark = match rest.get(len) {
-            Some(&EVEN_END) if is_first => EVEN,
-            Some(_) if is_first => ODD,
-            _ => 0,
-        };
-        (&rest[..len], mark)
     }
 }
 
 /// Checks the shape of the soup and the range of its vertex numbers; tells which of `count` vertices are used.
 pub(super) fn check(simplices: &[Vec<u32>], count: usize) -> Result<Vec<bool>, BuildError> {
-    if u32::try_from(count).map_or(true, |count| count > EVEN_END) {
+    if u32::try_from(count).map_or(true, |count| count > u32::MAX - 1) {
         return Err(BuildError::TooManyVertices(count));
     }
-    let mut used = vec![false; count];
+    let used: Vec<AtomicBool> = (0..count).map(|_| AtomicBool::new(false)).collect();
     for (dim, flat) in simplices.iter().enumerate() {
         if !flat.is_empty() && (dim > MAX_DIM || !flat.len().is_multiple_of(dim + 1)) {
             return Err(BuildError::MalformedSoup { dim, len: flat.len() });
         }
-        for (position, &vertex) in flat.iter().enumerate() {
-            match used.get_mut(vertex as usize) {
-                Some(used) => *used = true,
-                None => {
-                    return Err(BuildError::VertexOutOfRange { dim, index: position / (dim + 1), vertex, count });
+        let chunks = flat.par_chunks(CHUNK.start).map(|chunk| {
+            chunk.iter().position(|&vertex| match used.get(vertex as usize) {
+                Some(used) => {
+                    mark(used);
+                    false
                 }
-            }
+                None => true,
+            })
+        });
+        let wrong = chunks.enumerate().find_map_first(|(chunk, place)| Some(chunk * CHUNK.start + place?));
+        if let Some(position) = wrong {
+            return Err(BuildError::VertexOutOfRange {
+                dim,
+                index: position / (dim + 1),
+                vertex: flat[position],
+                count,
+            });
         }
     }
-    Ok(used)
+    Ok(used.into_iter().map(AtomicBool::into_inner).collect())
 }
 
-/// Rewrites every listed simplex as its word; words stand by first vertex, so that the simplices around a vertex are near
-/// each other however the input orders them.
-pub(super) fn sort(simplices: Vec<Vec<u32>>, order: &Order, meter: &Meter<'_>) -> Result<Words, BuildError> {
+/// Rewrites every listed simplex as its word, and deals the words out to buckets of about so many tails.
+pub(super) fn sort(
+    simplices: Vec<Vec<u32>>,
+    order: &Order,
+    bucket: usize,
+    meter: &Meter<'_>,
+) -> Result<Words, BuildError> {
     let num_listed = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).sum();
     let stage = meter.stage(Phase::Words, num_listed);
-    // Where the words of each first vertex start. Shifted by one, so that filling in moves each start to where it belongs.
-    let mut starts = vec![0_usize; order.num_vertices() + 2];
-    for (dim, flat) in simplices.iter().enumerate() {
-        for row in flat.chunks_exact(dim + 1) {
-            let first = row.iter().map(|&vertex| order.id(vertex)).min().unwrap_or(0);
-            starts[first as usize + 2] += dim + 2;
-        }
-    }
-    for vertex in 2..starts.len() {
-        starts[vertex] += starts[vertex - 1];
-    }
-    let mut flat = vec![0; starts[order.num_vertices() + 1]];
-    let mut words = vec![0; (MAX_DIM + 2) * ROWS];
+    let num_tails: usize = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1) * dim).sum();
+    let num_vertices = order.num_vertices();
+    // Vertices count as tails: isolated ones are work too.
+    let size = (num_vertices as u128 * bucket as u128 / (num_tails + num_vertices).max(1) as u128).max(1);
+    let size = usize::try_from(size).unwrap_or(1).max(num_vertices / MOST_BUCKETS);
+    let bits = size.next_power_of_two().trailing_zeros();
+    let mut parts = Vec::new();
     for (dim, simplices) in simplices.into_iter().enumerate() {
-        for (task, rows) in simplices.chunks((dim + 1) * ROWS).enumerate() {
-            if let Some((row, id)) = sort_rows(&mut words, rows, dim, order) {
-                let index = task * ROWS + row;
-                return Err(BuildError::RepeatedVertex { dim, index, vertex: order.input(id) });
-            }
-            let count = rows.len() / (dim + 1);
-            for word in words.chunks_exact(dim + 2).take(count) {
-                let next = &mut starts[word[0] as usize + 1];
-                flat[*next..*next + dim + 2].copy_from_slice(word);
-                *next += dim + 2;
-            }
-            stage.add(count);
+        let rows = (simplices.len() / MOST_CHUNKS).clamp(CHUNK.start, CHUNK.end) / (dim + 1);
+        let chunks = simplices.par_chunks(rows * (dim + 1)).map_init(Vec::new, |words, rows| {
+            let part = deal(rows, dim, order, bits, words);
+            stage.add(rows.len() / (dim + 1));
+            part
+        });
+        for (chunk, part) in chunks.collect::<Vec<_>>().into_iter().enumerate() {
+            let repeated = |(row, vertex)| BuildError::RepeatedVertex { dim, index: chunk * rows + row, vertex };
+            parts.push(part.map_err(repeated)?);
         }
     }
-    Ok(Words { flat })
+    Ok(Words { bits, num_vertices, parts })
 }
 
-/// Sorts rows of vertex numbers of the input into words; the first row that repeats a vertex, and the vertex.
-fn sort_rows(words: &mut [u32], rows: &[u32], dim: Dim, order: &Order) -> Option<(usize, u32)> {
-    let mut repeated = None;
-    for (number, (word, row)) in words.chunks_exact_mut(dim + 2).zip(rows.chunks_exact(dim + 1)).enumerate() {
+/// The words of some rows by bucket; `words` is room for them.
+///
+/// # Errors
+/// The first row that repeats a vertex, and that vertex as the input numbers it.
+fn deal(rows: &[u32], dim: Dim, order: &Order, bits: u32, words: &mut Vec<u32>) -> Result<Part, (usize, u32)> {
+    words.clear();
+    words.resize(rows.len() / (dim + 1) * (dim + 2), 0);
+    let is_good = match dim {
+        1 => sort_rows::<2>(rows, order, words),
+        2 => sort_rows::<3>(rows, order, words),
+        3 => sort_rows::<4>(rows, order, words),
+        _ => sort_long_rows(rows, dim, order, words),
+    };
+    if !is_good {
+        let mut all = rows.chunks_exact(dim + 1).enumerate();
+        return Err(all.find_map(|(row, vertices)| Some((row, repeated(vertices)?))).unwrap_or_default());
+    }
+    let bucket = |vertex: u32| (vertex >> bits) as usize;
+    // Nothing follows the last vertex, unless it is the first.
+    let last = dim.max(1);
+    let (mut least, mut most) = (u32::MAX, 0);
+    for word in words.chunks_exact(dim + 2) {
+        least = least.min(word[1]);
+        most = most.max(word[last]);
+    }
+    let first = bucket(least);
+    // Shifted by one, so that filling in moves each start to where it belongs.
+    let mut starts = vec![0_u32; bucket(most) + 3 - first];
+    for_each_tail(words, dim, bits, |tail, _| starts[bucket(tail[0]) - first + 2] += narrow(tail.len() + 1));
+    for bucket in 2..starts.len() {
+        starts[bucket] += starts[bucket - 1];
+    }
+    let mut flat = vec![0; starts[starts.len() - 1] as usize];
+    for_each_tail(words, dim, bits, |tail, mark| {
+        let next = &mut starts[bucket(tail[0]) - first + 1];
+        let record = &mut flat[*next as usize..][..tail.len() + 1];
+        record[0] = head(tail.len(), mark);
+        // Cheaper than a call to copy a few.
+        record[1..].iter_mut().zip(tail).for_each(|(to, from)| *to = *from);
+        *next += narrow(tail.len() + 1);
+    });
+    starts.pop();
+    Ok(Part { first, starts, flat })
+}
+
+/// Calls `visit` with every tail that goes to a bucket: each word with its mark, and what is left of it from a vertex on
+/// that is of another bucket than the one before.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "two bits")]
+fn for_each_tail(words: &[u32], dim: Dim, bits: u32, mut visit: impl FnMut(&[u32], u8)) {
+    for record in words.chunks_exact(dim + 2) {
+        let (mark, word) = ((record[0] & 3) as u8, &record[1..]);
+        visit(word, mark);
+        for place in 1..dim {
+            if word[place] >> bits != word[place - 1] >> bits {
+                visit(&word[place..], 0);
+            }
+        }
+    }
+}
+
+/// Sorts rows of `N` vertex numbers of the input into records, by a network without branches; false if a vertex is
+/// repeated.
+fn sort_rows<const N: usize>(rows: &[u32], order: &Order, records: &mut [u32]) -> bool {
+    let mut is_good = true;
+    for (row, record) in rows.as_chunks::<N>().0.iter().zip(records.chunks_exact_mut(N + 1)) {
+        let mut word = row.map(|vertex| order.id(vertex));
+        let mut is_odd = false;
+        for end in 1..N {
+            for place in (1..=end).rev() {
+                let (a, b) = (word[place - 1], word[place]);
+                is_odd ^= a > b;
+                (word[place - 1], word[place]) = (a.min(b), a.max(b));
+            }
+        }
+        is_good &= word.is_sorted_by(|a, b| a < b);
+        record[0] = head(N, if is_odd { ODD } else { EVEN });
+        record[1..].copy_from_slice(&word);
+    }
+    is_good
+}
+
+/// As [`sort_rows`], of any length.
+fn sort_long_rows(rows: &[u32], dim: Dim, order: &Order, records: &mut [u32]) -> bool {
+    let mut is_good = true;
+    for (row, record) in rows.chunks_exact(dim + 1).zip(records.chunks_exact_mut(dim + 2)) {
+        let (head_of_record, word) = record.split_at_mut(1);
         let mut swaps = 0;
         for (end, &vertex) in row.iter().enumerate() {
             let id = order.id(vertex);
@@ -120,27 +253,15 @@ fn sort_rows(words: &mut [u32], rows: &[u32], dim: Dim, order: &Order) -> Option
             }
             word[place] = id;
             swaps += end - place;
-            if place > 0 && word[place - 1] == id && repeated.is_none() {
-                repeated = Some((number, id));
-            }
         }
-        word[dim + 1] = if swaps % 2 == 0 { EVEN_END } else { ODD_END };
+        is_good &= word.is_sorted_by(|a, b| a < b);
+        head_of_record[0] = head(dim + 1, if swaps % 2 == 0 { EVEN } else { ODD });
     }
-    repeated
+    is_good
 }
 
-/// How each vertex is listed; empty if none is, and none is kept though it is not `used`.
-pub(super) fn listed_vertices(words: &Words, used: &[bool], order: &Order) -> Vec<u8> {
-    let mut marks = vec![0; order.num_vertices()];
-    for (mark, id) in marks.iter_mut().zip(0..) {
-        if !used[order.input(id) as usize] {
-            *mark = UNUSED;
-        }
-    }
-    for word in words.iter() {
-        if let [vertex] = word {
-            marks[*vertex as usize] = EVEN;
-        }
-    }
-    if marks.iter().all(|&mark| mark == 0) { Vec::new() } else { marks }
+/// The first vertex of a row that is there before.
+fn repeated(row: &[u32]) -> Option<u32> {
+    let mut ends = row.iter().enumerate();
+    ends.find_map(|(end, vertex)| row[..end].contains(vertex).then_some(*vertex))
 }
