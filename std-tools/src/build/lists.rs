@@ -6,8 +6,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 use sig_core::Index;
 
-use crate::build::blocks::Blocks;
-use crate::build::{Arrays, SigArrays, cofaces, index};
+use crate::build::cofaces::Cofacets;
+use crate::build::{Arrays, SigArrays, index};
 
 /// Simplices whose lists one task writes; a multiple of eight, for the flags.
 const TASK: usize = 1 << 14;
@@ -19,35 +19,39 @@ where
     Arrays: From<SigArrays<I>>,
 {
     let count = arrays.first.last().copied().unwrap_or(0);
-    pack_parts(arrays, count, None, write)
+    pack_parts(arrays, count, Cofacets::default(), write)
 }
 
 /// As [`pack`], but `write` is called for simplices below dimension d − 1 only: in that one the lists are the cofacets.
 pub(super) fn pack_below_facets<I: Index>(
     arrays: SigArrays<I>,
-    blocks: &Blocks,
+    cofacets: Cofacets<I>,
     write: impl Fn(Range<usize>, &mut Part<I>) + Sync,
 ) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
-    let count = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
-    pack_parts(arrays, count, Some(blocks), write)
+    let count = flaggable(&arrays.first);
+    pack_parts(arrays, count, cofacets, write)
 }
 
-/// Writes the lists of the first `count` simplices by `write`, those of the others below dimension d as their cofacets.
+/// How many simplices are below dimension d − 1: only those are flagged.
+pub(super) fn flaggable(first: &[usize]) -> usize {
+    first.len().checked_sub(2).map_or(0, |facets| first[facets])
+}
+
+/// Writes the lists of the first `count` simplices by `write`; those of the others below dimension d are `cofacets`.
 fn pack_parts<I: Index>(
     arrays: SigArrays<I>,
     count: usize,
-    blocks: Option<&Blocks>,
+    cofacets: Cofacets<I>,
     write: impl Fn(Range<usize>, &mut Part<I>) + Sync,
 ) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
     let top_start = arrays.first.last().copied().unwrap_or(0);
-    // Only simplices two dimensions below the tops are flagged.
-    let flaggable = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
+    let flaggable = flaggable(&arrays.first);
     let parts: Vec<Part<I>> = (0..count.div_ceil(TASK))
         .into_par_iter()
         .map(|task| {
@@ -64,12 +68,11 @@ where
             part
         })
         .collect();
-    let num_cofacets = blocks.and(arrays.dim()).filter(|&dim| dim > 0).map_or(0, |dim| cofaces::len(&arrays, dim));
-    let len = parts.iter().map(|part| part.lists.len()).sum::<usize>() + num_cofacets;
+    let len = parts.iter().map(|part| part.lists.len()).sum::<usize>() + cofacets.lists.len();
     if I::from_usize(len).is_some() {
-        concatenate(arrays, parts, len, blocks).into()
+        concatenate(arrays, parts, cofacets).into()
     } else {
-        concatenate(arrays.widen(), parts, len, blocks).into()
+        concatenate(arrays.widen(), parts, cofacets.widen()).into()
     }
 }
 
@@ -144,19 +147,25 @@ impl<I: Index> Part<I> {
     }
 }
 
-/// Completes `arrays` with the parts, and with the cofacets of the simplices that are in none; the lists take `len`
-/// entries.
+/// Completes `arrays` with the parts, and with the cofacets of the simplices that are in none.
 fn concatenate<I: Index, J: Index>(
     mut arrays: SigArrays<J>,
     parts: Vec<Part<I>>,
-    len: usize,
-    blocks: Option<&Blocks>,
+    cofacets: Cofacets<J>,
 ) -> SigArrays<J> {
     let count = arrays.first.last().copied().unwrap_or(0);
-    let (mut all_pointers, mut all_lists) = (vec![J::ZERO; count], vec![J::ZERO; len]);
     arrays.flags = parts.iter().flat_map(|part| part.flags.iter().copied()).collect();
     arrays.flags.resize(count.div_ceil(8), 0);
-    let (mut pointers, mut lists) = (all_pointers.as_mut_slice(), all_lists.as_mut_slice());
+    let before: usize = parts.iter().map(|part| part.lists.len()).sum();
+    arrays.pointers = vec![J::ZERO; count];
+    arrays.lists = cofacets.lists;
+    if before > 0 {
+        // Of most meshes the lists are nearly all cofacets, so moving them up is cheap against a copy of all.
+        let len = arrays.lists.len();
+        arrays.lists.resize(before + len, J::ZERO);
+        arrays.lists.copy_within(..len, before);
+    }
+    let (mut pointers, mut lists) = (arrays.pointers.as_mut_slice(), arrays.lists.as_mut_slice());
     let mut start = 0;
     let mut jobs = Vec::with_capacity(parts.len());
     for part in parts {
@@ -166,11 +175,12 @@ fn concatenate<I: Index, J: Index>(
         jobs.push((part, start - lists.len(), pointers, lists));
     }
     jobs.into_par_iter().for_each(|(part, start, pointers, lists)| part.copy_to(start, pointers, lists));
-    if let (Some(blocks), Some(dim @ 1..)) = (blocks, arrays.dim()) {
-        cofaces::write(&arrays, blocks, dim, (pointers, lists), start);
-    }
-    arrays.pointers = all_pointers;
-    arrays.lists = all_lists;
+    let to = pointers.par_chunks_mut(TASK).zip(cofacets.pointers.par_chunks(TASK));
+    to.for_each(|(pointers, cofacets)| {
+        for (pointer, offset) in pointers.iter_mut().zip(cofacets) {
+            *pointer = index(before + offset.to_usize());
+        }
+    });
     arrays
 }
 
@@ -195,6 +205,6 @@ mod tests {
             flags: vec![0; 5_000],
         }];
         let arrays = SigArrays::<u32> { first: vec![0, 40_000], num_simplices: 40_001, ..SigArrays::default() };
-        assert_eq!(concatenate(arrays, parts, 80_000, None), narrow);
+        assert_eq!(concatenate(arrays, parts, Cofacets::default()), narrow);
     }
 }

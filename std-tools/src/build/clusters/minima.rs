@@ -11,24 +11,31 @@
 //! All that concerns top simplices of dimension g ≥ p + 2 about a p-simplex; those of dimension p + 1 are clusters of
 //! their own, the top cofacets.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 
 use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
+use crate::build::blocks::Blocks;
+use crate::build::clusters::Cell;
+use crate::build::cofaces::{self, Cofacets};
 use crate::build::limits::Stage;
-use crate::build::lists::Part;
+use crate::build::lists::{Part, flaggable};
 use crate::build::{SigArrays, index};
 
-/// The relations, as found. Ids are stored as `I`, links as `L`.
-pub(super) struct Minima<I, L> {
+/// Top simplices that one task handles.
+const TASK: usize = 1 << 14;
+
+/// The relations, as found.
+pub(super) struct Minima<I> {
     first: Vec<usize>,
     /// The least local minimum of the largest dimension at each simplex below dimension d − 1; the stop code if none.
     representatives: Vec<I>,
     /// What else is in the list of a simplex, by simplex.
     others: Vec<Minimum<I>>,
-    /// How the top simplices of each dimension, from 1, hang together.
-    links: Vec<Links<L>>,
+    /// The top simplices of each dimension below d, from 1, by facet; nothing if none is top.
+    cofacets: Vec<Cofacets<I>>,
 }
 
 /// A local minimum at a face.
@@ -41,108 +48,133 @@ struct Minimum<I> {
     mask: u32,
 }
 
-/// The top simplices of one dimension g around each facet, as rings by increasing number. A link is the number of a top
-/// simplex among the g-simplices, and the position of the facet in it, in [`link_bits`] bits.
-struct Links<L> {
-    /// The next around the facet, for each top simplex and position.
-    next: Vec<L>,
-    /// The last around each (g − 1)-simplex; the stop code if it is in no top g-simplex. Empty if none is.
-    last: Vec<L>,
-}
-
-/// Bits that a position in a simplex of dimension `dim` takes.
-fn link_bits(dim: Dim) -> u32 {
-    (dim + 1).next_power_of_two().trailing_zeros()
-}
-
-/// The number of links that the simplices of dimension `dim` have room for, at most.
-pub(super) fn num_links<I: Index>(arrays: &SigArrays<I>) -> usize {
-    (0..arrays.first.len()).map(|dim| arrays.ids(dim).len() << link_bits(dim)).max().unwrap_or(0)
-}
-
-/// The relations of all simplices below dimension d. `is_top[p]` tells which p-simplices are top, or is empty.
-pub(super) fn find<I: Index, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>], stage: &Stage<'_>) -> Minima<I, L> {
-    let rows: Vec<&[I]> = (0..arrays.first.len()).map(|dim| arrays.facets(dim)).collect();
-    let below = arrays.first.len().checked_sub(2).map_or(0, |facets| arrays.first[facets]);
-    let mut minima = Minima {
-        first: arrays.first.clone(),
-        representatives: vec![I::STOP; below],
-        others: Vec::new(),
-        links: (1..arrays.first.len()).map(|_| Links { next: Vec::new(), last: Vec::new() }).collect(),
-    };
-    for dim in (1..arrays.first.len()).rev() {
-        if is_top[dim].iter().any(|&is_top| is_top) {
-            minima.add_dim(dim, &rows, &is_top[dim], arrays.ids(dim - 1).len());
+/// The relations of all simplices below dimension d − 1, and the cofacets of those of dimension d − 1. `is_top[p]` tells
+/// which p-simplices are top, or is empty. The entries of the cofacets must fit the index type.
+pub(super) fn find<I: Cell>(
+    arrays: &SigArrays<I>,
+    is_top: &[Vec<bool>],
+    stage: &Stage<'_>,
+) -> (Minima<I>, Cofacets<I>) {
+    let mut minima =
+        Minima { first: arrays.first.clone(), representatives: Vec::new(), others: Vec::new(), cofacets: Vec::new() };
+    let Some(top_dim @ 1..) = arrays.dim() else { return (minima, Cofacets::default()) };
+    let blocks = Blocks::new(arrays);
+    let mut cofacets: Vec<Cofacets<I>> = (1..=top_dim)
+        .map(|dim| match is_top[dim].as_slice() {
+            _ if dim == top_dim => cofaces::find(arrays, &blocks, dim, None),
+            [] => Cofacets::default(),
+            is_top => cofaces::find(arrays, &blocks, dim, Some(is_top)),
+        })
+        .collect();
+    drop(blocks);
+    let representatives = (0..flaggable(&arrays.first)).into_par_iter().map(|_| I::STOP.share()).collect();
+    let rows: Vec<&[I]> = (0..=top_dim).map(|dim| arrays.facets(dim)).collect();
+    let mut tops = Tops { first: &arrays.first, rows: &rows, cofacets: &cofacets, representatives };
+    // From dimension d downwards: a representative is of the largest dimension.
+    for dim in (1..=top_dim).rev() {
+        if !is_top[dim].is_empty() && dim > 1 {
+            minima.others.extend(tops.minima_of_dim(dim, &is_top[dim]));
         }
         stage.add(1);
     }
-    minima.join();
-    minima
+    tops.join(&mut minima.others);
+    minima.representatives = std::mem::take(&mut tops.representatives).into_par_iter().map(I::into_inner).collect();
+    let of_facets = cofacets.pop().unwrap_or_default();
+    minima.cofacets = cofacets;
+    (minima, of_facets)
 }
 
-impl<I: Index, L: Index> Minima<I, L> {
-    /// Takes in the top simplices of dimension `dim`; the larger ones are there already. There are `num_facets`
-    /// simplices in the dimension below.
-    fn add_dim(&mut self, dim: Dim, rows: &[&[I]], is_top: &[bool], num_facets: usize) {
-        let (facet_start, top_start, bits) = (self.first[dim - 1], self.first[dim], link_bits(dim));
-        let mut links = Links { next: vec![L::STOP; is_top.len() << bits], last: vec![L::STOP; num_facets] };
-        let mut faces = Faces { first: &self.first, rows, stack: Vec::new() };
-        let (representatives, others) = (&mut self.representatives, &mut self.others);
-        for ((number, facets), _) in
-            rows[dim].chunks_exact(dim + 1).enumerate().zip(is_top).filter(|(_, is_top)| **is_top)
-        {
-            let mut shared = 0;
-            for (i, facet) in facets.iter().enumerate() {
-                let last = &mut links.last[facet.to_usize() - facet_start];
-                let link = index(number << bits | i);
-                let next = if *last == L::STOP {
-                    link
-                } else {
-                    shared |= 1 << i;
-                    std::mem::replace(&mut links.next[last.to_usize()], link)
-                };
-                links.next[link.to_usize()] = next;
-                *last = link;
+/// The top simplices, and what is found of them.
+struct Tops<'a, I: Cell> {
+    first: &'a [usize],
+    rows: &'a [&'a [I]],
+    /// By dimension, from 1.
+    cofacets: &'a [Cofacets<I>],
+    representatives: Vec<I::Shared>,
+}
+
+impl<I: Cell> Tops<'_, I> {
+    /// Takes in the top simplices of dimension `dim`; the larger ones are there already. What is not the representative
+    /// of a face is given back.
+    fn minima_of_dim(&self, dim: Dim, is_top: &[bool]) -> Vec<Minimum<I>> {
+        let tasks = is_top.par_chunks(TASK).enumerate().map_init(Vec::new, |stack, (task, is_top)| {
+            let mut others = Vec::new();
+            let mut faces = Faces { first: self.first, rows: self.rows, stack: std::mem::take(stack) };
+            for number in (task * TASK..).zip(is_top).filter_map(|(number, is_top)| is_top.then_some(number)) {
+                self.add(number, dim, &mut faces, &mut others);
             }
-            let top = index(top_start + number);
-            faces.for_each_above(top, dim, shared, |face, mask| {
-                let representative = &mut representatives[face.to_usize()];
-                if *representative == I::STOP {
-                    *representative = top;
-                } else {
-                    others.push(Minimum { face, top, mask });
-                }
-            });
+            *stack = faces.stack;
+            others
+        });
+        tasks.collect::<Vec<_>>().concat()
+    }
+
+    /// Takes in top simplex number `number` of dimension `dim`.
+    #[inline]
+    fn add(&self, number: usize, dim: Dim, faces: &mut Faces<'_, I>, others: &mut Vec<Minimum<I>>) {
+        let (facet_start, cofacets) = (self.first[dim - 1], &self.cofacets[dim - 1]);
+        let top: I = index(self.first[dim] + number);
+        let mut shared = 0;
+        for (i, facet) in self.rows[dim][number * (dim + 1)..][..dim + 1].iter().enumerate() {
+            shared |= u32::from(cofacets.first(facet.to_usize() - facet_start) != top) << i;
         }
-        self.links[dim - 1] = links;
+        let larger = self.first.get(dim + 1).copied().unwrap_or(usize::MAX);
+        faces.for_each_above(top, dim, shared, |face, mask| {
+            let representative = &self.representatives[face.to_usize()];
+            let before = I::load(representative);
+            if before != I::STOP && before.to_usize() >= larger {
+                others.push(Minimum { face, top, mask });
+                return;
+            }
+            // Other threads may come in between, with greater ones or lesser.
+            let before = I::lower(representative, top);
+            if before < top {
+                others.push(Minimum { face, top, mask });
+            } else if before != I::STOP {
+                others.push(Minimum { face, top: before, mask: self.positions(face, before, dim) });
+            }
+        });
+    }
+
+    /// The positions of the vertices of a face in a top simplex of dimension `dim`.
+    fn positions(&self, face: I, top: I, dim: Dim) -> u32 {
+        let mut faces = Faces { first: self.first, rows: self.rows, stack: Vec::new() };
+        let mut mask = 0;
+        faces.for_each_above(top, dim, 0, |other, positions| {
+            if other == face {
+                mask = positions;
+            }
+        });
+        mask
     }
 
     /// Sorts the other minima by face, and strikes out those in the cluster of another.
-    fn join(&mut self) {
-        // Stable, so that at each face they stay by decreasing dimension, then increasing id.
-        let mut others = std::mem::take(&mut self.others);
-        others.par_sort_by_key(|minimum| minimum.face);
+    fn join(&self, others: &mut [Minimum<I>]) {
+        // At each face by decreasing dimension, then increasing id.
+        others.par_sort_unstable_by_key(|minimum| (minimum.face, Reverse(self.dim_of(minimum.top)), minimum.top));
         let mut groups: Vec<&mut [Minimum<I>]> = others.chunk_by_mut(|a, b| a.face == b.face).collect();
         groups.par_iter_mut().for_each_init(
-            || Walk { minima: &*self, visited: Vec::new(), queue: Vec::new() },
+            || Walk { tops: self, visited: Vec::new(), queue: Vec::new() },
             |walk, group| walk.join_at_face(group),
         );
-        drop(groups);
-        self.others = others;
     }
 
-    /// Writes the lists of a range of simplices below dimension d.
+    fn dim_of(&self, id: I) -> Dim {
+        self.first.partition_point(|&first| first <= id.to_usize()) - 1
+    }
+}
+
+impl<I: Index> Minima<I> {
+    /// Writes the lists of a range of simplices below dimension d − 1.
     pub(super) fn write(&self, ids: Range<usize>, part: &mut Part<I>) {
         let start = self.others.partition_point(|other| other.face.to_usize() < ids.start);
         let mut others = self.others[start..].iter().peekable();
         let mut list = Vec::new();
-        for (dim, range) in self.first.windows(2).enumerate() {
-            let (links, bits) = (&self.links[dim], link_bits(dim + 1));
+        for (range, cofacets) in self.first.windows(2).zip(&self.cofacets) {
             for id in ids.start.max(range[0])..ids.end.min(range[1]) {
-                let representative = self.representatives.get(id).copied().unwrap_or(I::STOP);
-                let last = links.last.get(id - range[0]).copied().unwrap_or(L::STOP);
+                let representative = self.representatives[id];
                 let has_others = others.peek().is_some_and(|other| other.face.to_usize() == id);
-                if representative != I::STOP && last == L::STOP && !has_others {
+                if representative != I::STOP && cofacets.pointers.is_empty() && !has_others {
                     part.push(&[representative]);
                     continue;
                 }
@@ -155,23 +187,12 @@ impl<I: Index, L: Index> Minima<I, L> {
                         list.push(other.top);
                     }
                 }
-                if last != L::STOP {
-                    let mut link = last;
-                    loop {
-                        link = links.next[link.to_usize()];
-                        list.push(index(range[1] + (link.to_usize() >> bits)));
-                        if link == last {
-                            break;
-                        }
-                    }
+                if !cofacets.pointers.is_empty() {
+                    list.extend_from_slice(cofacets.of(id - range[0]));
                 }
                 part.push(&list);
             }
         }
-    }
-
-    fn dim_of(&self, id: I) -> Dim {
-        self.first.partition_point(|&first| first <= id.to_usize()) - 1
     }
 }
 
@@ -217,22 +238,22 @@ impl<I: Index> Faces<'_, I> {
 }
 
 /// Walks clusters from top simplex to top simplex.
-struct Walk<'a, I, L> {
-    minima: &'a Minima<I, L>,
+struct Walk<'a, I: Cell> {
+    tops: &'a Tops<'a, I>,
     /// A bit for each simplex of the dimension, all clear between the walks.
     visited: Vec<u64>,
     /// The numbers of the top simplices met, and the positions of the vertices of the face in them.
     queue: Vec<(usize, u32)>,
 }
 
-impl<I: Index, L: Index> Walk<'_, I, L> {
+impl<I: Cell> Walk<'_, I> {
     /// Strikes out the minima at a face that are in the cluster of a lesser one. `group` holds all but the first.
     fn join_at_face(&mut self, group: &mut [Minimum<I>]) {
         let Some(minimum) = group.first() else { return };
-        let representative = self.minima.representatives[minimum.face.to_usize()];
-        let first_dim = self.minima.dim_of(representative);
-        for run in group.chunk_by_mut(|a, b| self.minima.dim_of(a.top) == self.minima.dim_of(b.top)) {
-            let dim = self.minima.dim_of(run[0].top);
+        let representative = I::load(&self.tops.representatives[minimum.face.to_usize()]);
+        let first_dim = self.tops.dim_of(representative);
+        for run in group.chunk_by_mut(|a, b| self.tops.dim_of(a.top) == self.tops.dim_of(b.top)) {
+            let dim = self.tops.dim_of(run[0].top);
             let least = if dim == first_dim { Some(representative) } else { None };
             self.join_in_dim(dim, least, run);
         }
@@ -257,13 +278,13 @@ impl<I: Index, L: Index> Walk<'_, I, L> {
         if left == 0 {
             return false;
         }
-        let (first, bits) = (self.minima.first[dim], link_bits(dim));
-        let links = &self.minima.links[dim - 1].next;
+        let (first, rows, cofacets) = (self.tops.first, self.tops.rows[dim], &self.tops.cofacets[dim - 1]);
+        let row = |number: usize| &rows[number * (dim + 1)..][..dim + 1];
         let all = u32::MAX >> (31 - dim);
         let mut meets_least = false;
-        self.visited.resize(self.visited.len().max((links.len() >> bits) / 64 + 1), 0);
+        self.visited.resize(self.visited.len().max(rows.len() / (dim + 1) / 64 + 1), 0);
         self.queue.clear();
-        self.queue.push((start.top.to_usize() - first, start.mask));
+        self.queue.push((start.top.to_usize() - first[dim], start.mask));
         self.visited[self.queue[0].0 / 64] |= 1 << (self.queue[0].0 % 64);
         let mut next = 0;
         while let Some(&(number, mask)) = self.queue.get(next).filter(|_| left > 0) {
@@ -273,22 +294,24 @@ impl<I: Index, L: Index> Walk<'_, I, L> {
             while free != 0 {
                 let i = free.trailing_zeros();
                 free &= free - 1;
-                // Only the next around the facet: the others are met from there.
-                let link = links[number << bits | i as usize].to_usize();
-                let neighbour = link >> bits;
-                let (word, bit) = (&mut self.visited[neighbour / 64], 1 << (neighbour % 64));
-                if *word & bit != 0 {
-                    continue;
-                }
-                *word |= bit;
-                self.queue.push((neighbour, insert_bit(remove_bit(mask, i), link & ((1 << bits) - 1))));
-                let top = index(first + neighbour);
-                if least == Some(top) {
-                    meets_least = true;
-                    left -= 1;
-                } else if let Ok(met) = later.binary_search_by_key(&top, |minimum| minimum.top) {
-                    later[met].mask = 0;
-                    left -= 1;
+                let facet = row(number)[i as usize];
+                for &top in cofacets.of(facet.to_usize() - first[dim - 1]) {
+                    let neighbour = top.to_usize() - first[dim];
+                    let (word, bit) = (&mut self.visited[neighbour / 64], 1 << (neighbour % 64));
+                    if *word & bit != 0 {
+                        continue;
+                    }
+                    *word |= bit;
+                    let place = row(neighbour).iter().position(|&other| other == facet).unwrap_or(0);
+                    self.queue.push((neighbour, insert_bit(remove_bit(mask, i), place)));
+                    if least == Some(top) {
+                        meets_least = true;
+                        left -= 1;
+                    } else if let Ok(met) = later.binary_search_by_key(&top, |minimum| minimum.top) {
+                        // It may be struck out already.
+                        left -= usize::from(later[met].mask != 0);
+                        later[met].mask = 0;
+                    }
                 }
             }
         }

@@ -11,12 +11,12 @@ mod sets;
 mod union;
 
 pub(super) use sets::Cell;
-use sig_core::Index;
 
 use crate::build::blocks::Blocks;
+use crate::build::cofaces::{self, Cofacets};
 use crate::build::limits::Stage;
 use crate::build::lists::pack_below_facets;
-use crate::build::{Arrays, Meter, Phase, SigArrays, pack};
+use crate::build::{Arrays, Meter, Phase, SigArrays};
 
 /// Pairs (top simplex, face) for each simplex up to which walking stars is the faster way. Meshes of dimension 3 to 5
 /// have 3 to 8; where large simplices overlap there may be hundreds.
@@ -31,17 +31,23 @@ where
     let stage = meter.stage(Phase::Coboundary, arrays.dim().unwrap_or(0));
     let num_tops = |tops: &Vec<bool>| tops.iter().filter(|&&is_top| is_top).count();
     let pairs = is_top.iter().enumerate().map(|(dim, tops)| num_tops(tops).saturating_mul(2 << dim));
-    if pairs.fold(0, usize::saturating_add) / MANY_FACES <= arrays.num_simplices {
-        if u32::from_usize(minima::num_links(&arrays)).is_some() {
-            let minima = minima::find::<I, u32>(&arrays, is_top, &stage);
-            pack(arrays, |ids, part| minima.write(ids, part))
-        } else {
-            let minima = minima::find::<I, u64>(&arrays, is_top, &stage);
-            pack(arrays, |ids, part| minima.write(ids, part))
-        }
-    } else {
-        by_union(arrays, &stage)
+    let is_mesh = pairs.fold(0, usize::saturating_add) / MANY_FACES <= arrays.num_simplices;
+    let num_cofacets = arrays.dim().filter(|&dim| dim > 0).map_or(0, |dim| cofaces::len(&arrays, dim));
+    match (is_mesh, I::from_usize(num_cofacets)) {
+        (true, Some(_)) => by_minima(arrays, is_top, &stage),
+        (false, Some(_)) => by_union(arrays, &stage),
+        (true, None) => by_minima::<u64>(arrays.widen(), is_top, &stage),
+        (false, None) => by_union::<u64>(arrays.widen(), &stage),
     }
+}
+
+/// The arrays with the relations by local minima.
+fn by_minima<I: Cell>(arrays: SigArrays<I>, is_top: &[Vec<bool>], stage: &Stage<'_>) -> Arrays
+where
+    Arrays: From<SigArrays<I>>,
+{
+    let (minima, cofacets) = minima::find(&arrays, is_top, stage);
+    pack_below_facets(arrays, cofacets, |ids, part| minima.write(ids, part))
 }
 
 /// The arrays with the relations by union-find.
@@ -49,28 +55,23 @@ fn by_union<I: Cell>(arrays: SigArrays<I>, stage: &Stage<'_>) -> Arrays
 where
     Arrays: From<SigArrays<I>>,
 {
+    let Some(dim @ 1..) = arrays.dim() else { return pack_below_facets(arrays, Cofacets::default(), |_, _| {}) };
     let blocks = Blocks::new(&arrays);
     let relations = union::find(&arrays, &blocks, stage);
+    let cofacets = cofaces::find(&arrays, &blocks, dim, None);
+    drop(blocks);
     let first = arrays.first.clone();
-    pack_below_facets(arrays, &blocks, |ids, part| union::write(&relations, &first, ids, part))
+    pack_below_facets(arrays, cofacets, |ids, part| union::write(&relations, &first, ids, part))
 }
 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use sig_core::Index;
 
     use super::*;
     use crate::build::{BuildOptions, build};
     use crate::soup::{Labels, Soup};
-
-    /// The arrays with the lists by local minima.
-    fn by_minima<I: Cell, L: Index>(arrays: &SigArrays<I>, is_top: &[Vec<bool>]) -> SigArrays<u64>
-    where
-        Arrays: From<SigArrays<I>>,
-    {
-        let minima = minima::find::<I, L>(arrays, is_top, &Meter::new(None).stage(Phase::Coboundary, 0));
-        pack(arrays.clone(), |ids, part| minima.write(ids, part)).into_wide()
-    }
 
     proptest! {
         /// Both ways, whichever the size of the complex suggests, at every width.
@@ -95,9 +96,12 @@ mod tests {
             let meter = Meter::new(None);
             let stage = meter.stage(Phase::Coboundary, 0);
             let expected = by_union(arrays.clone(), &stage).into_wide();
-            prop_assert_eq!(by_minima::<_, u32>(&arrays, &is_top), expected.clone());
+            for tops in is_top.iter_mut().filter(|tops| !tops.contains(&true)) {
+                tops.clear();
+            }
+            prop_assert_eq!(by_minima(arrays.clone(), &is_top, &stage).into_wide(), expected.clone());
             let wide = arrays.clone().widen();
-            prop_assert_eq!(by_minima::<_, u64>(&wide, &is_top), expected.clone());
+            prop_assert_eq!(by_minima(wide.clone(), &is_top, &stage).into_wide(), expected.clone());
             prop_assert_eq!(by_union(wide, &stage).into_wide(), expected);
         }
     }

@@ -17,6 +17,8 @@ pub(in crate::build) trait Cell: Index {
     fn store(shared: &Self::Shared, value: Self);
     /// Replaces `old` by `new`; false if it is not `old`.
     fn replace(shared: &Self::Shared, old: Self, new: Self) -> bool;
+    /// Replaces what is greater than `value` by it; what was there.
+    fn lower(shared: &Self::Shared, value: Self) -> Self;
     fn into_inner(shared: Self::Shared) -> Self;
     /// The highest bit.
     const HIGH_BIT: Self;
@@ -48,6 +50,11 @@ macro_rules! impl_cell {
             #[inline]
             fn replace(shared: &$atomic, old: Self, new: Self) -> bool {
                 shared.compare_exchange(old, new, Ordering::Relaxed, Ordering::Relaxed).is_ok()
+            }
+
+            #[inline]
+            fn lower(shared: &$atomic, value: Self) -> Self {
+                shared.fetch_min(value, Ordering::Relaxed)
             }
 
             #[inline]
