@@ -6,6 +6,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
+use rayon::prelude::*;
 use sig_core::format::{self, Column, Encoder, Kind, Section, SectionKind};
 use sig_core::{Dim, Index, IndexWidth};
 
@@ -13,6 +14,9 @@ use super::AlignedBytes;
 use crate::build::{Arrays, Built, SigArrays};
 use crate::frozen::{FrozenTree, LastVertices};
 use crate::soup::{Coordinates, Labels, Scalars};
+
+/// Bytes that one task copies.
+const COPY: usize = 1 << 20;
 
 /// The dimension from which on a SIG gets lower neighbours by default: they cost an index an edge, little where most
 /// simplices are larger, and stars in such complexes have so many top simplices that the tree finds them faster than the
@@ -405,7 +409,9 @@ impl<'a> Encoding<'a> {
             let mut bytes = AlignedBytes::zeroed(usize::try_from(encoder.file_bytes()).map_err(|_| too_large)?);
             let mut written = 0;
             encoder.write_with(crc32, |piece| {
-                bytes[written..written + piece.len()].copy_from_slice(piece);
+                let room = &mut bytes[written..written + piece.len()];
+                // On all threads, as the first touch of the room takes longer than the copy.
+                room.par_chunks_mut(COPY).zip(piece.par_chunks(COPY)).for_each(|(to, from)| to.copy_from_slice(from));
                 written += piece.len();
                 Ok::<(), EncodeError>(())
             })?;
