@@ -2,7 +2,7 @@
 //! of consecutive vertices whose faces one task finds ([`super::levels`]).
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use sig_core::{Dim, MAX_DIM};

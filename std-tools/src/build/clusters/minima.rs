@@ -27,6 +27,10 @@ use crate::build::{SigArrays, index};
 /// Top simplices that one task handles.
 const TASK: usize = 1 << 14;
 
+/// If there is more than one local minimum that is no representative for so many top simplices, all steps of walks are
+/// found at a time.
+const MANY_OTHERS: usize = 2;
+
 /// The relations, as found.
 pub(super) struct Minima<I> {
     first: Vec<usize>,
@@ -69,11 +73,16 @@ pub(super) fn find<I: Cell>(
     drop(blocks);
     let representatives = (0..flaggable(&arrays.first)).into_par_iter().map(|_| I::STOP.share()).collect();
     let rows: Vec<&[I]> = (0..=top_dim).map(|dim| arrays.facets(dim)).collect();
-    let mut tops = Tops { first: &arrays.first, rows: &rows, cofacets: &cofacets, representatives };
+    let next = vec![Vec::new(); top_dim];
+    let mut tops = Tops { first: &arrays.first, rows: &rows, cofacets: &cofacets, next, representatives };
     // From dimension d downwards: a representative is of the largest dimension.
     for dim in (1..=top_dim).rev() {
         if !is_top[dim].is_empty() && dim > 1 {
-            minima.others.extend(tops.minima_of_dim(dim, &is_top[dim]));
+            let others = tops.minima_of_dim(dim, &is_top[dim]);
+            if others.len() > is_top[dim].len() / MANY_OTHERS {
+                tops.next[dim - 1] = tops.all_next(dim, &is_top[dim]);
+            }
+            minima.others.extend(others);
         }
         stage.add(1);
     }
@@ -90,6 +99,8 @@ struct Tops<'a, I: Cell> {
     rows: &'a [&'a [I]],
     /// By dimension, from 1.
     cofacets: &'a [Cofacets<I>],
+    /// [`next`](Self::next) of each top simplex and position, by dimension, from 1; nothing where few walks need it.
+    next: Vec<Vec<I>>,
     representatives: Vec<I::Shared>,
 }
 
@@ -134,6 +145,31 @@ impl<I: Cell> Tops<'_, I> {
                 others.push(Minimum { face, top: before, mask: self.positions(face, before, dim) });
             }
         });
+    }
+
+    /// The top simplices of dimension `dim` around the facet `i` of one, as a ring: the number of the one after it.
+    #[inline]
+    fn next(&self, dim: Dim, number: usize, i: usize) -> usize {
+        match self.next[dim - 1].get(number * (dim + 1) + i) {
+            Some(next) => next.to_usize(),
+            None => self.find_next(dim, number, i),
+        }
+    }
+
+    fn find_next(&self, dim: Dim, number: usize, i: usize) -> usize {
+        let facet = self.rows[dim][number * (dim + 1) + i].to_usize() - self.first[dim - 1];
+        let top = index(self.first[dim] + number);
+        let list = self.cofacets[dim - 1].of(facet);
+        let after = list.iter().position(|&entry| entry == top).map_or(0, |place| place + 1);
+        list.get(after).or(list.first()).map_or(number, |next| next.to_usize() - self.first[dim])
+    }
+
+    fn all_next(&self, dim: Dim, is_top: &[bool]) -> Vec<I> {
+        let next = |place: usize| {
+            let number = place / (dim + 1);
+            if is_top[number] { index(self.find_next(dim, number, place % (dim + 1))) } else { I::STOP }
+        };
+        (0..is_top.len() * (dim + 1)).into_par_iter().map(next).collect()
     }
 
     /// The positions of the vertices of a face in a top simplex of dimension `dim`.
@@ -278,13 +314,13 @@ impl<I: Cell> Walk<'_, I> {
         if left == 0 {
             return false;
         }
-        let (first, rows, cofacets) = (self.tops.first, self.tops.rows[dim], &self.tops.cofacets[dim - 1]);
+        let (first, rows) = (self.tops.first[dim], self.tops.rows[dim]);
         let row = |number: usize| &rows[number * (dim + 1)..][..dim + 1];
         let all = u32::MAX >> (31 - dim);
         let mut meets_least = false;
         self.visited.resize(self.visited.len().max(rows.len() / (dim + 1) / 64 + 1), 0);
         self.queue.clear();
-        self.queue.push((start.top.to_usize() - first[dim], start.mask));
+        self.queue.push((start.top.to_usize() - first, start.mask));
         self.visited[self.queue[0].0 / 64] |= 1 << (self.queue[0].0 % 64);
         let mut next = 0;
         while let Some(&(number, mask)) = self.queue.get(next).filter(|_| left > 0) {
@@ -294,24 +330,23 @@ impl<I: Cell> Walk<'_, I> {
             while free != 0 {
                 let i = free.trailing_zeros();
                 free &= free - 1;
+                // Only the next around the facet: the others are met from there.
+                let neighbour = self.tops.next(dim, number, i as usize);
+                let (word, bit) = (&mut self.visited[neighbour / 64], 1 << (neighbour % 64));
+                if *word & bit != 0 {
+                    continue;
+                }
+                *word |= bit;
                 let facet = row(number)[i as usize];
-                for &top in cofacets.of(facet.to_usize() - first[dim - 1]) {
-                    let neighbour = top.to_usize() - first[dim];
-                    let (word, bit) = (&mut self.visited[neighbour / 64], 1 << (neighbour % 64));
-                    if *word & bit != 0 {
-                        continue;
-                    }
-                    *word |= bit;
-                    let place = row(neighbour).iter().position(|&other| other == facet).unwrap_or(0);
-                    self.queue.push((neighbour, insert_bit(remove_bit(mask, i), place)));
-                    if least == Some(top) {
-                        meets_least = true;
-                        left -= 1;
-                    } else if let Ok(met) = later.binary_search_by_key(&top, |minimum| minimum.top) {
-                        // It may be struck out already.
-                        left -= usize::from(later[met].mask != 0);
-                        later[met].mask = 0;
-                    }
+                let place = row(neighbour).iter().position(|&other| other == facet).unwrap_or(0);
+                self.queue.push((neighbour, insert_bit(remove_bit(mask, i), place)));
+                let top = index(first + neighbour);
+                if least == Some(top) {
+                    meets_least = true;
+                    left -= 1;
+                } else if let Ok(met) = later.binary_search_by_key(&top, |minimum| minimum.top) {
+                    later[met].mask = 0;
+                    left -= 1;
                 }
             }
         }
