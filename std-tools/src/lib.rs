@@ -34,6 +34,7 @@
 //! | multi-resolution cell complexes | [`mod@mcc`] | [`mcc::simplify`](mcc::simplify()), [`mcc::Front`] |
 //! | Betti numbers and torsion | [`mod@homology`] | [`homology::homology`](homology::homology()) |
 //! | encode, write, map, load, verify | [`store`] | [`Mapped`], [`Loaded`], [`store::Encoding`], [`store::atomic`] |
+//! | a relation of all simplices at once | [`sweep`] | [`sweep::Sweep`] |
 //! | facts about a complex as a whole | [`analysis`] | [`analysis::Analysis`] |
 //! | where a complex is no manifold | [`singularities`] | [`singularities::Singularities`] |
 //! | simplices by the input's labels | [`names`] | [`names::find_simplex`] |
@@ -85,6 +86,7 @@ pub mod soup;
 pub mod spool;
 pub mod store;
 pub mod subsample;
+pub mod sweep;
 pub mod tops;
 pub mod witness;
 

@@ -22,3 +22,4 @@ mod relations;
 mod rules;
 mod scratch;
 mod storage;
+mod sweep;

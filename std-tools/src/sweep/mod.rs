@@ -1,0 +1,249 @@
+//! A relation of all simplices of a dimension at once: all vertex stars, all co-boundaries of edges, all adjacencies.
+//!
+//! One question about one simplex is answered by the core, which walks its star. For all of them that reads the same rows
+//! again and again; a [`Sweep`] inverts the boundary instead: it goes through the simplices above, in the order in which they
+//! lie, and notes each with those of its faces that are in the block at hand, which a counting sort by face then brings
+//! together. Blocks are worked on by all threads, each in memory of a bounded size, and come in order.
+//!
+//! The answers are those of [`sig_core::Relations`], by increasing id.
+//!
+//! ```
+//! # use std::convert::Infallible;
+//! # fn sweep(complex: &sig_core::Complex<'_, u32>) -> Result<(), Infallible> {
+//! // The number of tetrahedra at each vertex.
+//! let sweep = sig_tools::sweep::Sweep::new(complex);
+//! let count = |block: &sig_tools::sweep::Block<'_, u32>| block.iter().map(|(_, found)| found.len()).collect::<Vec<_>>();
+//! let mut counts = Vec::new();
+//! sweep.coboundary(0, 3, count, |block: Vec<usize>| Ok::<_, Infallible>(counts.extend(block)))
+//! # }
+//! ```
+
+mod block;
+mod ordered;
+mod parts;
+mod rows;
+
+use std::ops::Range;
+use std::sync::OnceLock;
+
+pub use block::Block;
+pub use ordered::in_order;
+use sig_core::{Complex, Dim, Index, SimplexId};
+
+use block::{Question, Sorter, narrow};
+use parts::Parts;
+use rows::Rows;
+
+/// Answers in a block, as a rule: few enough for the cache, many for what is read again at its edges.
+const BLOCK: usize = 1 << 19;
+
+/// Sweeps over the simplices of a complex.
+///
+/// The complex must be a right one, as its `validate` says: of another the answers mean nothing, but there is no panic.
+///
+/// # Order and threads
+///
+/// Every sweep takes two functions. The first one, `work`, is given blocks of consecutive simplices with their answers, on
+/// any thread; the second one, `each`, what `work` makes of them, in the order of the ids, on the thread of the caller.
+/// Errors of the second one end the sweep.
+///
+/// # Memory
+///
+/// For each thread 16 bytes for each of about 2^19 answers, 24 where indices are wider than 32 bits, and what `work` makes of
+/// eight blocks; of a simplex that has more answers, for as many as it has. Blocks that turn out larger are done in halves.
+pub struct Sweep<'c, 'a, I> {
+    complex: &'c Complex<'a, I>,
+    rows: Rows<'a, I>,
+    parts: OnceLock<Parts>,
+    block: usize,
+}
+
+impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
+    /// Sweeps over a complex. Cost: none yet; the first sweep that looks upwards makes one pass over the edges, and keeps
+    /// two numbers for each few thousand simplices.
+    #[must_use]
+    pub fn new(complex: &'c Complex<'a, I>) -> Self {
+        let rows = Rows::new(complex);
+        Self { complex, rows, parts: OnceLock::new(), block: BLOCK }
+    }
+
+    /// The same with about so many answers in a block, more than 0: less memory, and more of the file read twice.
+    #[must_use]
+    pub fn with_block(self, answers: usize) -> Self {
+        Self { block: answers.max(1), ..self }
+    }
+
+    /// C_{p,g} of all p-simplices: nothing for g ≤ p or g > d.
+    ///
+    /// Cost: about that of reading the boundary rows from dimension p + 1 to g in order, and of writing the answers. Rows
+    /// near the edge of a block are read again for the next, twice as often as once where the vertices are numbered so that
+    /// neighbours have near numbers. Where they are numbered at random, all rows are read for each block.
+    ///
+    /// # Errors
+    /// The first of `each`.
+    pub fn coboundary<T: Send, E>(
+        &self,
+        dim: Dim,
+        of_dim: Dim,
+        work: impl Fn(&Block<'_, I>) -> T + Sync,
+        each: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let dims = if of_dim > dim { of_dim..(of_dim + 1).min(self.rows.dims()) } else { 0..0 };
+        self.invert(dim, &Question::Cofaces(dims), work, each)
+    }
+
+    /// The stars of all p-simplices, themselves included.
+    ///
+    /// Cost: as [`coboundary`](Self::coboundary) for each dimension above.
+    ///
+    /// # Errors
+    /// The first of `each`.
+    pub fn star<T: Send, E>(
+        &self,
+        dim: Dim,
+        work: impl Fn(&Block<'_, I>) -> T + Sync,
+        each: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.invert(dim, &Question::Cofaces(dim..self.rows.dims()), work, each)
+    }
+
+    /// A_p of all p-simplices: for p > 0 the other ones across each facet, facet after facet, by increasing id across each;
+    /// for vertices the other ends of their edges, by increasing id.
+    ///
+    /// Two simplices share one facet at most, so none comes twice.
+    ///
+    /// Cost: for vertices and for p = d one pass over the edges, or over the d-simplices and their facets' lists, and the
+    /// answers. For 0 < p < d the sweep of C_{p−1,p} comes before, whose answers are kept: as many indices as the boundary
+    /// rows of the p-simplices have, and a number for each (p−1)-simplex.
+    ///
+    /// # Errors
+    /// The first of `each`.
+    pub fn adjacency<T: Send, E>(
+        &self,
+        dim: Dim,
+        work: impl Fn(&Block<'_, I>) -> T + Sync,
+        each: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if dim == 0 {
+            return self.invert(0, &Question::OtherEnds, work, each);
+        }
+        if dim + 1 >= self.rows.dims() {
+            // What a SIG stores at the facets of its largest simplices.
+            let cofacets = |facet: I, ids: &mut Vec<I>| {
+                let entries = self.complex.partial_coboundary(SimplexId::new(facet.to_usize()));
+                ids.extend(entries.map(|entry| narrow::<I>(entry.index())));
+            };
+            return self.across(dim, cofacets, work, each);
+        }
+        let (mut starts, mut all) = (vec![0], Vec::new());
+        let lists = |block: &Block<'_, I>| (block.starts().to_vec(), block.ids().to_vec());
+        let kept = self.coboundary(dim - 1, dim, lists, |(block, ids)| {
+            let before = all.len();
+            starts.extend(block.iter().skip(1).map(|start| before + start));
+            all.extend(ids);
+            Ok::<(), std::convert::Infallible>(())
+        });
+        let Ok(()) = kept;
+        let first = self.rows.ids(dim - 1).start;
+        let cofacets = |facet: I, ids: &mut Vec<I>| {
+            let place = facet.to_usize().wrapping_sub(first);
+            if let Some(&[start, end]) = starts.get(place..).and_then(|starts| starts.first_chunk()) {
+                ids.extend(all.get(start..end).unwrap_or_default());
+            }
+        };
+        self.across(dim, cofacets, work, each)
+    }
+
+    /// Answers a question by inversion.
+    fn invert<T: Send, E>(
+        &self,
+        dim: Dim,
+        question: &Question,
+        work: impl Fn(&Block<'_, I>) -> T + Sync,
+        mut each: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let ids = self.rows.ids(dim);
+        let parts = self.parts.get_or_init(|| Parts::new(&self.rows, (self.block / 64).clamp(1, 1 << 12)));
+        let answers = match question {
+            Question::Cofaces(dims) => dims.clone().map(|above| self.num_incidences(dim, above)).sum(),
+            Question::OtherEnds => self.num_incidences(0, 1),
+        };
+        let len = self.num_in_block(answers, ids.len());
+        let answer = |sorter: &mut Sorter<I>, block: Range<usize>| {
+            let mut results = Vec::new();
+            // Those still to be done, the last one next.
+            let mut waiting = vec![block];
+            while let Some(block) = waiting.pop() {
+                let room = if block.len() > 1 { self.block.saturating_mul(2) } else { usize::MAX };
+                match sorter.answer((&self.rows, parts), question, (dim, block.clone()), room) {
+                    Ok(answers) => results.push(work(&answers)),
+                    Err(block::Overflow) => {
+                        let middle = block.start + block.len() / 2;
+                        waiting.extend([middle..block.end, block.start..middle]);
+                    }
+                }
+            }
+            results
+        };
+        in_order(blocks(ids, len), Sorter::new, answer, |results| results.into_iter().try_for_each(&mut each))
+    }
+
+    /// The simplices across the facets, which `cofacets` adds to a list.
+    fn across<T: Send, E>(
+        &self,
+        dim: Dim,
+        cofacets: impl Fn(I, &mut Vec<I>) + Sync,
+        work: impl Fn(&Block<'_, I>) -> T + Sync,
+        mut each: impl FnMut(T) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let ids = self.rows.ids(dim);
+        // As many as on a manifold, about; a block ends where there are too many.
+        let len = self.num_in_block(ids.len().saturating_mul(dim + 1), ids.len());
+        let answer = |(starts, found): &mut (Vec<usize>, Vec<I>), block: Range<usize>| {
+            let mut results = Vec::new();
+            let mut first = block.start;
+            for (id, row) in block.clone().zip(self.rows.of(dim, block.clone()).chunks_exact(dim + 1)) {
+                if id == first {
+                    found.clear();
+                    starts.clear();
+                    starts.push(0);
+                }
+                let itself = narrow::<I>(id);
+                for &facet in row {
+                    let before = found.len();
+                    cofacets(facet, found);
+                    if let Some(place) = found[before..].iter().position(|&other| other == itself) {
+                        found.remove(before + place);
+                    }
+                }
+                starts.push(found.len());
+                if found.len() >= self.block || id + 1 == block.end {
+                    results.push(work(&Block::new(first, starts, found)));
+                    first = id + 1;
+                }
+            }
+            results
+        };
+        let init = || (Vec::new(), Vec::new());
+        in_order(blocks(ids, len), init, answer, |results| results.into_iter().try_for_each(&mut each))
+    }
+
+    /// How often simplices of one dimension are faces of those of another, or of their own.
+    fn num_incidences(&self, dim: Dim, above: Dim) -> usize {
+        let each = (0..=dim as u64).fold(1_u64, |each, i| each * (above as u64 + 1 - i) / (i + 1));
+        self.rows.ids(above).len().saturating_mul(usize::try_from(each).unwrap_or(usize::MAX))
+    }
+
+    /// How many of `count` simplices, which have `answers` together, make a block; of few, so many that each thread has some.
+    fn num_in_block(&self, answers: usize, count: usize) -> usize {
+        let most = u32::MAX as usize / 2;
+        let by_answers = (self.block as u128 * count as u128 / answers.max(1) as u128).min(most as u128);
+        let by_threads = count.div_ceil(4 * rayon::current_num_threads()).max(256);
+        usize::try_from(by_answers).unwrap_or(most).min(by_threads).max(1)
+    }
+}
+
+/// Consecutive ids in blocks.
+fn blocks(ids: Range<usize>, len: usize) -> impl Iterator<Item = Range<usize>> {
+    ids.clone().step_by(len).map(move |start| start..(start + len).min(ids.end))
+}
