@@ -1,15 +1,19 @@
-//! What queries cost on a Rips complex of many dimensions, on a mapped file of each kind.
+//! What queries cost: on a Rips complex of many dimensions, on a mapped file of each kind; and on a mesh that does not fit
+//! the cache, against their floors.
 //!
 //! ```text
 //! cargo bench --bench query                       50,000 points on the 4-sphere, radius 0.21, up to dimension 7
 //! cargo bench --bench query -- 5000 0.35 5        other numbers of points, radius and dimension
 //! GUDHI_BENCH=./gudhi_bench cargo bench --bench query   with GUDHI's simplex tree in the same run (see benches/peers)
+//! cargo bench --bench query -- floors             sweeps and single queries on the grid of 121³ vertices, about 1 GB
+//! cargo bench --bench query -- floors 56          of another grid; or of the tetrahedral mesh in a file: mesh.sigc
 //! ```
 //!
 //! Each query is asked of random simplices of one dimension; both kinds of file take turns with the peer, several rounds,
 //! and the medians are printed. Read the ratios.
 
 mod common;
+mod floors;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -37,6 +41,11 @@ type Timings = BTreeMap<(&'static str, usize), Vec<f64>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments();
+    match arguments.split_first() {
+        Some((mode, rest)) if mode == "floors" => return floors::run(rest.first().map_or("121", String::as_str)),
+        Some((mode, rest)) if mode == "watched" => return floors::watched(rest),
+        _ => {}
+    }
     let argument = |number: usize, default: &str| arguments.get(number).map_or(default, String::as_str).to_owned();
     let (points, radius, max_dim) = (argument(0, "50000").parse()?, argument(1, "0.21"), argument(2, "7"));
     let folder = tempfile::tempdir()?;

@@ -32,6 +32,7 @@ mod query;
 mod report;
 mod rips;
 mod simplify;
+mod sweep;
 mod tree;
 mod tree_input;
 mod verify;
@@ -87,6 +88,7 @@ enum Command {
     Info(info::Args),
     Homology(homology::Args),
     Query(query::Args),
+    Sweep(sweep::Args),
     Draw(draw::Args),
     Tree(tree::Args),
     Compare(compare::Args),
@@ -113,6 +115,7 @@ impl Command {
             Self::Info(args) => args.run(),
             Self::Homology(args) => args.run(),
             Self::Query(args) => args.run(),
+            Self::Sweep(args) => args.run(),
             Self::Draw(args) => args.run(),
             Self::Tree(args) => args.run(),
             Self::Compare(args) => args.run(),

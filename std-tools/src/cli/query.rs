@@ -7,7 +7,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 use serde::Serialize;
 use sig_core::format::{FormatError, SectionKind};
-use sig_core::{Complex, Dim, Index, Relations, SimplexId, with_complex};
+use sig_core::{Complex, Dim, Index, Relations, Scratch, ScratchError, SimplexId, with_complex};
 use sig_tools::names::{FindError, find_simplex, simplex_labels, simplex_name};
 use sig_tools::store::Access;
 use sig_tools::{OwnedScratch, View, with_view};
@@ -31,7 +31,8 @@ Examples:
   sig query bunny.sigc boundary 3,17,20         the edges of a triangle
   sig query bunny.sigc link 0,17 --json         the link of an edge, as JSON
   sig query bunny.sigc adjacent 3,17,20         the triangles that share an edge with a triangle
-  sig query bunny.sigc adjacent 3,17,20 --dim 0 those that share a vertex with it")]
+  sig query bunny.sigc adjacent 3,17,20 --dim 0 those that share a vertex with it
+  sig sweep bunny.sigc star 0                   everything around each vertex")]
 pub(super) struct Args {
     /// The file; `-` is standard input
     file: PathBuf,
@@ -57,14 +58,21 @@ pub(super) struct Question {
     #[arg(allow_hyphen_values = true)]
     simplex: String,
 
+    #[command(flatten)]
+    of: OfDim,
+}
+
+/// Which simplices of a relation are asked for.
+#[derive(Clone, Copy, clap::Args)]
+pub(super) struct OfDim {
     /// The dimension: of the faces or cofaces for `boundary` and `coboundary` (the next one by default), of the shared
     /// faces for `adjacent` (one less than that of the simplex by default)
     #[arg(long, value_name = "Q")]
-    dim: Option<Dim>,
+    pub(super) dim: Option<Dim>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Relation {
+pub(super) enum Relation {
     /// The vertices of the simplex
     Vertices,
     /// The faces of one dimension
@@ -144,9 +152,8 @@ impl Question {
     /// The simplices that the relation has in a complex, that of a file, by increasing id.
     pub(super) fn answer<V: Relations>(&self, complex: &V, file: &Path) -> anyhow::Result<Vec<SimplexId>> {
         let simplex = self.simplex(complex, file)?;
-        let mut found = self.find(complex, simplex, &mut OwnedScratch::new(complex));
-        found.sort_unstable();
-        Ok(found)
+        let mut memory = OwnedScratch::new(complex);
+        Ok(memory.run(|scratch| self.relation.of(complex, simplex, self.of, scratch)))
     }
 
     fn simplex(&self, complex: &impl Relations, file: &Path) -> anyhow::Result<SimplexId> {
@@ -154,18 +161,20 @@ impl Question {
             FindError::RepeatedVertex { .. } => UsageError(error.to_string()).into(),
             error => anyhow::Error::new(error).context(file.display().to_string()),
         })?;
-        self.check_dim(complex, simplex)?;
+        self.relation.check_dim(complex, complex.dim_of(simplex).unwrap_or(0), self.of)?;
         Ok(simplex)
     }
+}
 
-    /// Refuses a dimension where there is none to choose, or that the relation cannot have.
-    fn check_dim(&self, complex: &impl Relations, simplex: SimplexId) -> Result<(), UsageError> {
-        let Some(dim) = self.dim else { return Ok(()) };
-        let (own, top) = (complex.dim_of(simplex).unwrap_or(0), complex.dim().unwrap_or(0));
-        let (name, range) = match self.relation {
-            Relation::Boundary => ("boundary", 0..own),
-            Relation::Adjacent => ("adjacent", 0..own),
-            Relation::Coboundary => ("coboundary", own + 1..top + 1),
+impl Relation {
+    /// Refuses a dimension where there is none to choose, or that the relation of simplices of dimension `own` cannot have.
+    pub(super) fn check_dim(self, complex: &impl Relations, own: Dim, of: OfDim) -> Result<(), UsageError> {
+        let Some(dim) = of.dim else { return Ok(()) };
+        let top = complex.dim().unwrap_or(0);
+        let (name, range) = match self {
+            Self::Boundary => ("boundary", 0..own),
+            Self::Adjacent => ("adjacent", 0..own),
+            Self::Coboundary => ("coboundary", own + 1..top + 1),
             _ => return Err(UsageError("--dim is for boundary, coboundary and adjacent only".to_owned())),
         };
         if range.contains(&dim) {
@@ -179,34 +188,33 @@ impl Question {
         Err(UsageError(format!("--dim {dim}: for {name} of a simplex of dimension {own} {allowed}")))
     }
 
-    fn find<V: Relations>(
-        &self,
+    /// What it gives for a simplex, by increasing id; of the clusters, the simplex itself.
+    pub(super) fn of<V: Relations>(
+        self,
         complex: &V,
         simplex: SimplexId,
-        memory: &mut OwnedScratch<V::Index>,
-    ) -> Vec<SimplexId> {
+        of: OfDim,
+        scratch: &mut Scratch<'_, V::Index>,
+    ) -> Result<Vec<SimplexId>, ScratchError> {
         let own = complex.dim_of(simplex).unwrap_or(0);
-        match self.relation {
-            Relation::Vertices => complex.vertices(simplex).map(SimplexId::from).collect(),
-            Relation::Boundary => match self.dim {
+        let mut found: Vec<SimplexId> = match self {
+            Self::Vertices => complex.vertices(simplex).map(SimplexId::from).collect(),
+            Self::Boundary => match of.dim {
                 Some(dim) => complex.boundary(simplex, dim).collect(),
                 None => complex.facets(simplex).collect(),
             },
-            Relation::Coboundary => {
-                let dim = self.dim.unwrap_or(own + 1);
-                memory.run(|scratch| Ok(complex.coboundary(simplex, dim, scratch)?.collect()))
-            }
-            Relation::Star => memory.run(|scratch| Ok(complex.star(simplex, scratch)?.collect())),
-            Relation::Link => memory.run(|scratch| Ok(complex.link(simplex, scratch)?.collect())),
-            Relation::Closure => complex.closure(simplex).collect(),
-            Relation::Adjacent => memory.run(|scratch| {
-                Ok(match self.dim {
-                    Some(dim) => complex.k_adjacency(simplex, dim, scratch)?.collect(),
-                    None => complex.adjacency(simplex, scratch)?.collect(),
-                })
-            }),
-            Relation::Clusters | Relation::Find => vec![simplex],
-        }
+            Self::Coboundary => complex.coboundary(simplex, of.dim.unwrap_or(own + 1), scratch)?.collect(),
+            Self::Star => complex.star(simplex, scratch)?.collect(),
+            Self::Link => complex.link(simplex, scratch)?.collect(),
+            Self::Closure => complex.closure(simplex).collect(),
+            Self::Adjacent => match of.dim {
+                Some(dim) => complex.k_adjacency(simplex, dim, scratch)?.collect(),
+                None => complex.adjacency(simplex, scratch)?.collect(),
+            },
+            Self::Clusters | Self::Find => vec![simplex],
+        };
+        found.sort_unstable();
+        Ok(found)
     }
 }
 

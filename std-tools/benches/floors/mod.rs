@@ -1,0 +1,273 @@
+//! Queries against their floors: sweeps over all simplices beside a sequential pass over the same arrays, and random single
+//! queries on a file larger than the cache beside the misses of the cache that they cannot do without.
+
+mod packed;
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+
+use rayon::prelude::*;
+use sig_core::format::{Column, SectionKind};
+use sig_core::{Complex, Dim, Index, Relations, Scratch, SimplexId, VertexId, with_complex};
+use sig_tools::build::{BuildOptions, build};
+use sig_tools::generate::SplitMix64;
+use sig_tools::store::{EncodeOptions, Encoding};
+use sig_tools::sweep::{Block, Sweep};
+use sig_tools::{Mapped, OwnedScratch};
+
+use crate::common::{Timing, grid, on_one_thread, timed};
+
+const ROUNDS: usize = 5;
+/// Random simplices asked about.
+const SAMPLE: usize = 20_000;
+/// The same where a simulator counts.
+const FEW: usize = 2_000;
+
+/// Measures both on the grid of so many vertices a side, or on the complex in a file.
+pub(crate) fn run(mesh: &str) -> Result<(), Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let built = folder.path().join("grid.sigc");
+    let path = match mesh.parse() {
+        Ok(side) => {
+            let complex = build(grid(side), &BuildOptions::default())?;
+            Encoding::new(&complex, &EncodeOptions::default())?.write_to(&mut std::fs::File::create(&built)?)?;
+            built.as_path()
+        }
+        Err(_) => Path::new(mesh),
+    };
+    let map = Mapped::open(path)?;
+    println!("{} bytes, {} threads, medians of {ROUNDS} rounds", map.bytes().len(), rayon::current_num_threads());
+    with_complex!(map.complex()?, complex => {
+        sweeps(&complex)?;
+        random(&complex, path)?;
+        packed::packed(&complex)
+    })
+}
+
+/// One relation of some random simplices, for a simulator of caches to watch.
+pub(crate) fn watched(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+    let [path, relation, dim, count] = arguments else { return Err("FILE RELATION DIM COUNT".into()) };
+    let (dim, count): (Dim, usize) = (dim.parse()?, count.parse()?);
+    let map = Mapped::open(path)?;
+    with_complex!(map.complex()?, complex => {
+        let (simplices, words) = sample(&complex, dim, FEW);
+        let mut memory = OwnedScratch::new(&complex);
+        let mut scratch = memory.scratch();
+        let asked = simplices.iter().zip(&words).take(count);
+        black_box(asked.map(|(&simplex, word)| ask(&complex, relation, simplex, word, &mut scratch)).sum::<usize>());
+    });
+    Ok(())
+}
+
+/// The sweeps: what is asked, of which dimension, and from which dimension to which the boundary rows are read.
+fn sweeps<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn Error>> {
+    let top = complex.dim().ok_or("an empty complex")?;
+    let sweep = Sweep::new(complex);
+    println!("\nsweeps; the pass reads the arrays involved and writes as many bytes as there are answers, on as many threads");
+    println!("relation      answers   read, MB  answers, MB   pass, ms   sweep, ms  ratio   one thread: pass, ms   sweep, ms  ratio");
+    let count = |block: &Block<'_, I>| black_box(block).ids().len();
+    let report = |name: String, rows: std::ops::RangeInclusive<Dim>, lists: bool, run: &(dyn Fn() -> usize + Sync)| {
+        let bytes = arrays(complex, rows, lists);
+        let answers = run();
+        let written = answers * I::WIDTH.bytes();
+        let mut seconds = [(); 4].map(|()| Vec::new());
+        for _ in 0..ROUNDS {
+            seconds[0].push(timed(|| pass(&bytes, written)).0);
+            seconds[1].push(timed(run).0);
+            seconds[2].push(on_one_thread(|| timed(|| pass(&bytes, written)).0)?);
+            seconds[3].push(on_one_thread(|| timed(run).0)?);
+        }
+        let [pass, swept, pass_1, swept_1] = seconds.map(|samples| Timing::of(samples).median * 1e3);
+        let read: usize = bytes.iter().map(|bytes| bytes.len()).sum();
+        println!(
+            "{name:<10} {answers:>10} {:10.1} {:12.1} {pass:10.1} {swept:11.1} {:6.2} {pass_1:22.1} {swept_1:11.1} {:6.2}",
+            read as f64 / 1e6,
+            written as f64 / 1e6,
+            swept / pass,
+            swept_1 / pass_1,
+        );
+        Ok::<_, Box<dyn Error>>(())
+    };
+    let total = |sum: &mut usize, found: usize| {
+        *sum += found;
+        Ok::<_, std::convert::Infallible>(())
+    };
+    for dim in 0..top {
+        report(format!("star {dim}"), dim + 1..=top, false, &|| {
+            let mut sum = 0;
+            let Ok(()) = sweep.star(dim, count, |found| total(&mut sum, found));
+            sum
+        })?;
+        for above in dim + 1..=top {
+            report(format!("C_{dim},{above}"), dim + 1..=above, false, &|| {
+                let mut sum = 0;
+                let Ok(()) = sweep.coboundary(dim, above, count, |found| total(&mut sum, found));
+                sum
+            })?;
+        }
+    }
+    for dim in 0..=top {
+        report(format!("A_{dim}"), dim.max(1)..=dim.max(1), dim == top, &|| {
+            let mut sum = 0;
+            let Ok(()) = sweep.adjacency(dim, count, |found| total(&mut sum, found));
+            sum
+        })?;
+    }
+    Ok(())
+}
+
+/// The bytes of the boundary rows of some dimensions, and of the pointers and lists.
+fn arrays<'a, I: Index>(complex: &Complex<'a, I>, dims: std::ops::RangeInclusive<Dim>, lists: bool) -> Vec<&'a [u8]> {
+    let section = |kind| complex.container().section(kind).map_or(&[][..], |section| section.column.as_bytes());
+    let rows = |dims: std::ops::Range<Dim>| dims.map(|dim| complex.num_simplices_of_dim(dim) * (dim + 1)).sum::<usize>();
+    let start = rows(1..*dims.start()) * I::WIDTH.bytes();
+    let len = rows(*dims.start()..dims.end() + 1) * I::WIDTH.bytes();
+    let mut arrays = vec![&section(SectionKind::Boundary)[start..start + len]];
+    if lists {
+        arrays.extend([SectionKind::Pointers, SectionKind::Lists, SectionKind::Pairs].map(section));
+    }
+    arrays
+}
+
+/// Reads some arrays from their starts to their ends, and writes as many bytes as are asked for, in pieces that stay in the
+/// cache.
+fn pass(arrays: &[&[u8]], written: usize) {
+    const PIECE: usize = 1 << 18;
+    let word = |word: &[u8]| u64::from_ne_bytes(word.try_into().unwrap_or_default());
+    for bytes in arrays {
+        let sum = |piece: &[u8]| piece.chunks_exact(8).map(word).fold(0, u64::wrapping_add);
+        black_box(bytes.par_chunks(PIECE).map(sum).reduce(|| 0, u64::wrapping_add));
+    }
+    (0..written.div_ceil(PIECE)).into_par_iter().for_each_init(
+        || vec![0_u8; PIECE],
+        |piece, value| {
+            piece.fill(value as u8);
+            black_box(&*piece);
+        },
+    );
+}
+
+/// What is asked of single simplices, and of which dimension.
+const QUESTIONS: [(&str, Dim); 11] = [
+    ("facets", 3),
+    ("vertices", 3),
+    ("find", 3),
+    ("is-top", 1),
+    ("C_2,3", 2),
+    ("C_1,3", 1),
+    ("C_0,3", 0),
+    ("star", 1),
+    ("star", 0),
+    ("A_3", 3),
+    ("A_0", 0),
+];
+
+/// Single queries of random simplices, beside the time of a dependent read at a random place of the same bytes, and the
+/// number of lines that a simulated cache had to fetch for them.
+fn random<I: Index>(complex: &Complex<'_, I>, path: &Path) -> Result<(), Box<dyn Error>> {
+    let mut memory = OwnedScratch::new(complex);
+    let mut scratch = memory.scratch();
+    let mut times = BTreeMap::new();
+    let mut latency = Vec::new();
+    for _ in 0..ROUNDS {
+        latency.push(dependent_read(complex));
+        for question @ (relation, dim) in QUESTIONS {
+            let (simplices, words) = sample(complex, dim, SAMPLE);
+            // Out of the cache with what the sample took into it.
+            latency.push(dependent_read(complex));
+            let asked = simplices.iter().zip(&words);
+            let (seconds, found) =
+                timed(|| asked.map(|(&simplex, word)| ask(complex, relation, simplex, word, &mut scratch)).sum::<usize>());
+            let (samples, answers) = times.entry(question).or_insert((Vec::new(), 0));
+            samples.push(seconds / SAMPLE as f64);
+            *answers = found;
+        }
+    }
+    let latency = Timing::of(latency);
+    println!("\nrandom single queries; a dependent read at a random place: {}", latency.show(1e9, "ns"));
+    println!("relation   dim   answers        ns   lines   ns / (lines × latency)");
+    for ((relation, dim), (samples, answers)) in times {
+        let time = Timing::of(samples).median;
+        let answers = answers as f64 / SAMPLE as f64;
+        let lines = lines(path, relation, dim).unwrap_or(f64::NAN);
+        let ratio = time / (lines * latency.median);
+        println!("{relation:<10} {dim:>3} {answers:9.1} {:9.0} {lines:7.1} {ratio:8.2}", time * 1e9);
+    }
+    Ok(())
+}
+
+/// Some simplices of a dimension, drawn with a seed, with their vertices.
+fn sample(complex: &impl Relations, dim: Dim, count: usize) -> (Vec<SimplexId>, Vec<Vec<VertexId>>) {
+    let mut random = SplitMix64::new(11 + dim as u64);
+    let (first, _) = complex.simplices_of_dim(dim).bounds();
+    let among = complex.num_simplices_of_dim(dim);
+    let simplices: Vec<SimplexId> =
+        (0..count).map(|_| SimplexId::new(first.index() + random.next_below(among))).collect();
+    let words = simplices.iter().map(|&simplex| complex.vertices(simplex).collect()).collect();
+    (simplices, words)
+}
+
+/// How many simplices a relation gives; each was looked at.
+fn ask<I: Index>(
+    complex: &Complex<'_, I>,
+    relation: &str,
+    simplex: SimplexId,
+    word: &[VertexId],
+    scratch: &mut Scratch<'_, I>,
+) -> usize {
+    let count = |found: &mut dyn Iterator<Item = SimplexId>| found.map(black_box).count();
+    let up = |found: Result<sig_core::relations::Simplices<'_, I>, _>| found.map_or(0, |mut found| count(&mut found));
+    match relation {
+        "facets" => count(&mut complex.facets(simplex)),
+        "vertices" => count(&mut complex.vertices(simplex).map(SimplexId::from)),
+        "find" => count(&mut complex.find(word).into_iter()),
+        "is-top" => usize::from(complex.is_top(simplex)),
+        "star" => up(complex.star(simplex, scratch)),
+        "A_0" | "A_3" => up(complex.adjacency(simplex, scratch)),
+        _ => up(complex.coboundary(simplex, 3, scratch)),
+    }
+}
+
+/// Seconds of a read whose place is known only when the one before it is done, at random places of the boundary, the
+/// pointers and the lists.
+fn dependent_read<I: Index>(complex: &Complex<'_, I>) -> f64 {
+    const READS: usize = 1 << 20;
+    let kinds = [SectionKind::Boundary, SectionKind::Pointers, SectionKind::Lists];
+    let columns = kinds.map(|kind| complex.container().section(kind).map_or(Column::U8(&[]), |section| section.column));
+    let sections: Vec<&[I]> =
+        columns.iter().map(|column| bytemuck::try_cast_slice(column.as_bytes()).unwrap_or_default()).collect();
+    let longest = sections.iter().max_by_key(|section| section.len()).copied().unwrap_or_default();
+    let mut random = SplitMix64::new(5);
+    let (seconds, last) = timed(|| {
+        (0..READS).fold(0, |last, _| {
+            // The value that was read decides, by an odd or even number, though not where to.
+            let place = random.next_below(longest.len().max(1)) ^ (last & 1);
+            longest.get(place).map_or(0, |value| value.to_usize())
+        })
+    });
+    black_box(last);
+    seconds / READS as f64
+}
+
+/// Lines of memory that a query fetches, by cachegrind with the caches of this machine; `None` without valgrind.
+fn lines(path: &Path, relation: &str, dim: Dim) -> Option<f64> {
+    let misses = |count: usize| {
+        let output = Command::new("valgrind")
+            .args(["--tool=cachegrind", "--cache-sim=yes", "--cachegrind-out-file=/dev/null"])
+            .arg(std::env::current_exe().ok()?)
+            .arg("watched")
+            .arg(path)
+            .args([relation, &dim.to_string(), &count.to_string()])
+            .output()
+            .ok()?;
+        let text = String::from_utf8(output.stderr).ok()?;
+        // ==1== LLd misses:  1,234  ( 1,200 rd + 34 wr)
+        let line = text.lines().find_map(|line| line.split_once("LLd misses:"))?;
+        let reads = line.1.split_once('(')?.1.split_whitespace().next()?.replace(',', "");
+        reads.parse::<f64>().ok()
+    };
+    Some((misses(FEW)? - misses(0)?) / FEW as f64)
+}
