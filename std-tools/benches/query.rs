@@ -6,7 +6,8 @@
 //! cargo bench --bench query -- 5000 0.35 5        other numbers of points, radius and dimension
 //! GUDHI_BENCH=./gudhi_bench cargo bench --bench query   with GUDHI's simplex tree in the same run (see benches/peers)
 //! cargo bench --bench query -- floors             sweeps and single queries on the grid of 121³ vertices, about 1 GB
-//! cargo bench --bench query -- floors 56          of another grid; or of the tetrahedral mesh in a file: mesh.sigc
+//! cargo bench --bench query -- floors 56 sweeps   of another grid, or of a tetrahedral mesh in a .sigc file; one part alone:
+//!                                                 sweeps, single (queries), packed
 //! ```
 //!
 //! Each query is asked of random simplices of one dimension; both kinds of file take turns with the peer, several rounds,
@@ -42,7 +43,7 @@ type Timings = BTreeMap<(&'static str, usize), Vec<f64>>;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments();
     match arguments.split_first() {
-        Some((mode, rest)) if mode == "floors" => return floors::run(rest.first().map_or("121", String::as_str)),
+        Some((mode, rest)) if mode == "floors" => return floors::run(rest),
         Some((mode, rest)) if mode == "watched" => return floors::watched(rest),
         _ => {}
     }

@@ -86,7 +86,8 @@ impl Large<'_> {
     /// with the holes.
     fn section(&self, kind: SectionKind) -> (Vec<(usize, Vec<u64>)>, usize) {
         let num_pointers = self.start(3);
-        let shifted = |value: usize, by: usize| if value == u64::STOP.to_usize() { u64::STOP } else { (value + by) as u64 };
+        let shifted =
+            |value: usize, by: usize| if value == u64::STOP.to_usize() { u64::STOP } else { (value + by) as u64 };
         // The runs of numbers that stand with each simplex of the first dimensions.
         let by_dim = |dims: usize, each: &dyn Fn(Dim, SimplexId) -> u64| -> Vec<(usize, Vec<u64>)> {
             let run = |dim| {

@@ -20,14 +20,18 @@ use sig_tools::{Mapped, OwnedScratch};
 
 use crate::common::{Timing, grid, on_one_thread, timed};
 
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 /// Random simplices asked about.
 const SAMPLE: usize = 20_000;
 /// The same where a simulator counts.
 const FEW: usize = 2_000;
 
-/// Measures both on the grid of so many vertices a side, or on the complex in a file.
-pub(crate) fn run(mesh: &str) -> Result<(), Box<dyn Error>> {
+/// Measures on the grid of so many vertices a side, or on the complex in a file: the sweeps, single queries, the packed
+/// prototype, or all of them.
+pub(crate) fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
+    let argument = |number: usize, default| arguments.get(number).map_or(default, String::as_str);
+    let (mesh, what) = (argument(0, "121"), argument(1, "all"));
+    let wanted = |part| what == "all" || what == part;
     let folder = tempfile::tempdir()?;
     let built = folder.path().join("grid.sigc");
     let path = match mesh.parse() {
@@ -41,9 +45,18 @@ pub(crate) fn run(mesh: &str) -> Result<(), Box<dyn Error>> {
     let map = Mapped::open(path)?;
     println!("{} bytes, {} threads, medians of {ROUNDS} rounds", map.bytes().len(), rayon::current_num_threads());
     with_complex!(map.complex()?, complex => {
-        sweeps(&complex)?;
-        random(&complex, path)?;
-        packed::packed(&complex)
+        // All pages are mapped before anything is measured.
+        pass(&[map.bytes()], 0);
+        if wanted("sweeps") {
+            sweeps(&complex)?;
+        }
+        if wanted("single") {
+            random(&complex, path)?;
+        }
+        if wanted("packed") {
+            packed::packed(&complex)?;
+        }
+        Ok(())
     })
 }
 
@@ -53,7 +66,7 @@ pub(crate) fn watched(arguments: &[String]) -> Result<(), Box<dyn Error>> {
     let (dim, count): (Dim, usize) = (dim.parse()?, count.parse()?);
     let map = Mapped::open(path)?;
     with_complex!(map.complex()?, complex => {
-        let (simplices, words) = sample(&complex, dim, FEW);
+        let (simplices, words) = sample(&complex, relation, dim, FEW);
         let mut memory = OwnedScratch::new(&complex);
         let mut scratch = memory.scratch();
         let asked = simplices.iter().zip(&words).take(count);
@@ -66,8 +79,12 @@ pub(crate) fn watched(arguments: &[String]) -> Result<(), Box<dyn Error>> {
 fn sweeps<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn Error>> {
     let top = complex.dim().ok_or("an empty complex")?;
     let sweep = Sweep::new(complex);
-    println!("\nsweeps; the pass reads the arrays involved and writes as many bytes as there are answers, on as many threads");
-    println!("relation      answers   read, MB  answers, MB   pass, ms   sweep, ms  ratio   one thread: pass, ms   sweep, ms  ratio");
+    println!(
+        "\nsweeps; the pass reads the arrays involved and writes as many bytes as there are answers, on as many threads"
+    );
+    println!(
+        "relation      answers   read, MB  answers, MB   pass, ms   sweep, ms  ratio   one thread: pass, ms   sweep, ms  ratio"
+    );
     let count = |block: &Block<'_, I>| black_box(block).ids().len();
     let report = |name: String, rows: std::ops::RangeInclusive<Dim>, lists: bool, run: &(dyn Fn() -> usize + Sync)| {
         let bytes = arrays(complex, rows, lists);
@@ -122,7 +139,8 @@ fn sweeps<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn Error>> {
 /// The bytes of the boundary rows of some dimensions, and of the pointers and lists.
 fn arrays<'a, I: Index>(complex: &Complex<'a, I>, dims: std::ops::RangeInclusive<Dim>, lists: bool) -> Vec<&'a [u8]> {
     let section = |kind| complex.container().section(kind).map_or(&[][..], |section| section.column.as_bytes());
-    let rows = |dims: std::ops::Range<Dim>| dims.map(|dim| complex.num_simplices_of_dim(dim) * (dim + 1)).sum::<usize>();
+    let rows =
+        |dims: std::ops::Range<Dim>| dims.map(|dim| complex.num_simplices_of_dim(dim) * (dim + 1)).sum::<usize>();
     let start = rows(1..*dims.start()) * I::WIDTH.bytes();
     let len = rows(*dims.start()..dims.end() + 1) * I::WIDTH.bytes();
     let mut arrays = vec![&section(SectionKind::Boundary)[start..start + len]];
@@ -175,12 +193,13 @@ fn random<I: Index>(complex: &Complex<'_, I>, path: &Path) -> Result<(), Box<dyn
     for _ in 0..ROUNDS {
         latency.push(dependent_read(complex));
         for question @ (relation, dim) in QUESTIONS {
-            let (simplices, words) = sample(complex, dim, SAMPLE);
+            let (simplices, words) = sample(complex, relation, dim, SAMPLE);
             // Out of the cache with what the sample took into it.
             latency.push(dependent_read(complex));
             let asked = simplices.iter().zip(&words);
-            let (seconds, found) =
-                timed(|| asked.map(|(&simplex, word)| ask(complex, relation, simplex, word, &mut scratch)).sum::<usize>());
+            let (seconds, found) = timed(|| {
+                asked.map(|(&simplex, word)| ask(complex, relation, simplex, word, &mut scratch)).sum::<usize>()
+            });
             let (samples, answers) = times.entry(question).or_insert((Vec::new(), 0));
             samples.push(seconds / SAMPLE as f64);
             *answers = found;
@@ -199,14 +218,18 @@ fn random<I: Index>(complex: &Complex<'_, I>, path: &Path) -> Result<(), Box<dyn
     Ok(())
 }
 
-/// Some simplices of a dimension, drawn with a seed, with their vertices.
-fn sample(complex: &impl Relations, dim: Dim, count: usize) -> (Vec<SimplexId>, Vec<Vec<VertexId>>) {
+/// Some simplices of a dimension, drawn with a seed, and where they are to be found by them, their vertices.
+fn sample(complex: &impl Relations, relation: &str, dim: Dim, count: usize) -> (Vec<SimplexId>, Vec<Vec<VertexId>>) {
     let mut random = SplitMix64::new(11 + dim as u64);
     let (first, _) = complex.simplices_of_dim(dim).bounds();
     let among = complex.num_simplices_of_dim(dim);
     let simplices: Vec<SimplexId> =
         (0..count).map(|_| SimplexId::new(first.index() + random.next_below(among))).collect();
-    let words = simplices.iter().map(|&simplex| complex.vertices(simplex).collect()).collect();
+    let word = |&simplex: &SimplexId| match relation {
+        "find" => complex.vertices(simplex).collect(),
+        _ => Vec::new(),
+    };
+    let words = simplices.iter().map(word).collect();
     (simplices, words)
 }
 

@@ -85,11 +85,16 @@ pub(super) fn packed<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn E
     let mut report = |name: &str, integers: usize, packed: usize| {
         let plain = integers * I::WIDTH.bytes();
         let share = packed as f64 / plain.max(1) as f64;
-        println!("{name:<14} {integers:>12} {plain:>13} {packed:>13} {share:8.2} {:6.1}", packed as f64 * 8.0 / integers as f64);
+        println!(
+            "{name:<14} {integers:>12} {plain:>13} {packed:>13} {share:8.2} {:6.1}",
+            packed as f64 * 8.0 / integers as f64
+        );
         plain_bytes += plain;
         packed_bytes += packed;
     };
-    println!("\npacked blocks of {ROWS} rows\ncolumn             integers         bytes        packed    share   bits each");
+    println!(
+        "\npacked blocks of {ROWS} rows\ncolumn             integers         bytes        packed    share   bits each"
+    );
     for dim in 1..=top {
         let (rows, behind) = rest.split_at(complex.num_simplices_of_dim(dim) * (dim + 1));
         rest = behind;
@@ -105,7 +110,11 @@ pub(super) fn packed<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn E
     for dim in 0..top {
         let (first, end) = complex.simplices_of_dim(dim).bounds();
         let of_dim = pointers.get(first.index()..end.index()).unwrap_or_default();
-        report(&format!("pointers, {dim}"), of_dim.len(), Packed::new(of_dim.iter().map(value), u64::MAX).bytes(I::WIDTH.bytes()));
+        report(
+            &format!("pointers, {dim}"),
+            of_dim.len(),
+            Packed::new(of_dim.iter().map(value), u64::MAX).bytes(I::WIDTH.bytes()),
+        );
     }
     let lists = section(SectionKind::Lists);
     report("lists", lists.len(), Packed::new(lists.iter().map(value), u64::MAX).bytes(I::WIDTH.bytes()));
@@ -135,11 +144,15 @@ pub(super) fn packed<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn E
         for _ in 0..ROUNDS {
             let plain = |row: &usize| SimplexId::new(first.index() + row);
             let facets = |row: &usize| (0..=top).map(|column| facet(top, *row, column)).sum::<usize>();
-            let (time, a) = timed(|| sample.iter().map(|row| complex.facets(plain(row)).map(SimplexId::index).sum::<usize>()).sum::<usize>());
+            let (time, a) = timed(|| {
+                sample.iter().map(|row| complex.facets(plain(row)).map(SimplexId::index).sum::<usize>()).sum::<usize>()
+            });
             seconds[0].push(time);
             let (time, b) = timed(|| sample.iter().map(facets).sum::<usize>());
             seconds[1].push(time);
-            let (time, c) = timed(|| sample.iter().map(|row| complex.vertices(plain(row)).map(VertexId::index).sum::<usize>()).sum::<usize>());
+            let (time, c) = timed(|| {
+                sample.iter().map(|row| complex.vertices(plain(row)).map(VertexId::index).sum::<usize>()).sum::<usize>()
+            });
             seconds[2].push(time);
             let (time, d) = timed(|| sample.iter().map(|&row| vertices(row)).sum::<usize>());
             seconds[3].push(time);

@@ -89,7 +89,8 @@ impl Args {
     fn check(&self, complex: &impl Relations) -> Result<(), UsageError> {
         if complex.dim().is_none_or(|top| self.simplices > top) {
             let dim = complex.dim().map_or("−1".to_owned(), |top| top.to_string());
-            let message = format!("there are no simplices of dimension {} in a complex of dimension {dim}", self.simplices);
+            let message =
+                format!("there are no simplices of dimension {} in a complex of dimension {dim}", self.simplices);
             return Err(UsageError(message));
         }
         self.relation.check_dim(complex, self.simplices, self.of)

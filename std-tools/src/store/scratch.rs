@@ -45,7 +45,8 @@ impl<I: Index> OwnedScratch<I> {
         // Vertices without edges take no bytes, and there may be any number of them. An answer has none of them but the one
         // that was asked for.
         let count = if complex.dim() == Some(0) { 1 } else { simplices.min(MOST) };
-        let queue = if complex.dim() == Some(0) { 1 } else { simplices.saturating_add(complex.num_vertices()).min(MOST) };
+        let queue =
+            if complex.dim() == Some(0) { 1 } else { simplices.saturating_add(complex.num_vertices()).min(MOST) };
         Self {
             marks: vec![0; mark_words(simplices)],
             queue: vec![I::ZERO; queue],

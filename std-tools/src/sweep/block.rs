@@ -58,6 +58,9 @@ pub(super) enum Question {
     OtherEnds,
 }
 
+/// Cofaces that are looked at between two checks of the room.
+const PIECE: usize = 1 << 10;
+
 /// More answers than there is room for.
 pub(super) struct Overflow;
 
@@ -65,13 +68,15 @@ pub(super) struct Overflow;
 pub(super) struct Sorter<I> {
     /// The place of a simplex in the block, and one of its answer.
     pairs: Vec<(u32, I)>,
+    /// How many pairs there are; behind them are old ones.
+    len: usize,
     starts: Vec<usize>,
     ids: Vec<I>,
 }
 
 impl<I: Index> Sorter<I> {
     pub(super) const fn new() -> Self {
-        Self { pairs: Vec::new(), starts: Vec::new(), ids: Vec::new() }
+        Self { pairs: Vec::new(), len: 0, starts: Vec::new(), ids: Vec::new() }
     }
 
     /// Answers for consecutive simplices of a dimension, unless there is more than `room` to say.
@@ -82,24 +87,29 @@ impl<I: Index> Sorter<I> {
         (dim, block): (Dim, Range<usize>),
         room: usize,
     ) -> Result<Block<'_, I>, Overflow> {
-        self.pairs.clear();
+        self.begin(block.len());
         let around = parts.around(dim, block.clone());
         let dims = match question {
             Question::Cofaces(dims) => dims.clone(),
             Question::OtherEnds => 1..2,
         };
-        for coface_dim in dims {
-            if coface_dim == dim {
-                self.pairs.extend((0..).zip(block.clone()).map(|(place, id)| (place, narrow(id))));
+        for above in dims {
+            if above == dim {
+                self.reserve(block.len());
+                block.clone().for_each(|id| self.push(id - block.start, narrow(id)));
                 continue;
             }
-            for &part in &around {
-                let cofaces = parts.ids(coface_dim, part);
+            let pieces = around.iter().flat_map(|&part| {
+                let ids = parts.ids(above, part);
+                ids.clone().step_by(PIECE).map(move |start| start..(start + PIECE).min(ids.end))
+            });
+            for cofaces in pieces {
+                self.reserve(cofaces.len().saturating_mul(binomial(above + 1, dim + 1)));
                 match question {
-                    Question::Cofaces(_) => self.push_faces(rows, (dim, &block), (coface_dim, cofaces)),
+                    Question::Cofaces(_) => self.push_faces(rows, (dim, &block), (above, cofaces)),
                     Question::OtherEnds => self.push_ends(rows, &block, cofaces),
                 }
-                if self.pairs.len() > room {
+                if self.len > room {
                     return Err(Overflow);
                 }
             }
@@ -107,16 +117,47 @@ impl<I: Index> Sorter<I> {
         Ok(self.sort(block))
     }
 
+    /// Forgets what was answered before.
+    fn begin(&mut self, simplices: usize) {
+        self.len = 0;
+        self.starts.clear();
+        self.starts.resize(simplices + 3, 0);
+    }
+
+    /// Makes room for so many pairs more.
+    fn reserve(&mut self, more: usize) {
+        let needed = self.len + more;
+        if self.pairs.len() < needed {
+            self.pairs.resize(needed, (0, I::ZERO));
+        }
+    }
+
+    /// Adds to the answer of the simplex at a place; to none, for a place past the block. Without a branch: which faces of a
+    /// simplex are in a block is not to be foreseen.
+    #[inline]
+    fn push(&mut self, place: usize, id: I) {
+        let end = self.starts.len() - 3;
+        let clamped = place.min(end);
+        if let Some(pair) = self.pairs.get_mut(self.len) {
+            *pair = (clamped as u32, id);
+        }
+        if let Some(count) = self.starts.get_mut(clamped + 2) {
+            *count += 1;
+        }
+        self.len += usize::from(clamped < end);
+    }
+
     /// Adds each of some cofaces to the answers of its faces in the block.
-    fn push_faces(&mut self, rows: &Rows<'_, I>, (dim, block): (Dim, &Range<usize>), (above, ids): (Dim, Range<usize>)) {
-        let (start, len) = (block.start, block.len());
+    fn push_faces(
+        &mut self,
+        rows: &Rows<'_, I>,
+        (dim, block): (Dim, &Range<usize>),
+        (above, ids): (Dim, Range<usize>),
+    ) {
         for (id, row) in ids.clone().zip(rows.of(above, ids).chunks_exact(above + 1)) {
             let coface = narrow(id);
-            rows.faces(above, row, above + 1, above - dim, &mut |face: I| {
-                let place = face.to_usize().wrapping_sub(start);
-                if place < len {
-                    self.pairs.push((place as u32, coface));
-                }
+            rows.faces(above, row, above - dim, &mut |face: I| {
+                self.push(face.to_usize().wrapping_sub(block.start), coface);
             });
         }
     }
@@ -124,36 +165,33 @@ impl<I: Index> Sorter<I> {
     /// Adds each end of some edges to the answer of the other one, if that is in the block.
     fn push_ends(&mut self, rows: &Rows<'_, I>, block: &Range<usize>, edges: Range<usize>) {
         for ends in rows.of(1, edges).chunks_exact(2) {
-            for (end, other) in [(ends[1], ends[0]), (ends[0], ends[1])] {
-                let place = end.to_usize().wrapping_sub(block.start);
-                if place < block.len() {
-                    self.pairs.push((place as u32, other));
-                }
-            }
+            self.push(ends[1].to_usize().wrapping_sub(block.start), ends[0]);
+            self.push(ends[0].to_usize().wrapping_sub(block.start), ends[1]);
         }
     }
 
     /// Sorts the pairs by place; those of one place keep their order.
     fn sort(&mut self, block: Range<usize>) -> Block<'_, I> {
-        // Shifted by one, so that filling in moves each start to where it belongs.
-        self.starts.clear();
-        self.starts.resize(block.len() + 2, 0);
-        for &(place, _) in &self.pairs {
-            self.starts[place as usize + 2] += 1;
-        }
+        // The counts are shifted by two, so that filling in moves each start to where it belongs.
         for place in 2..self.starts.len() {
             self.starts[place] += self.starts[place - 1];
         }
-        if self.ids.len() < self.pairs.len() {
-            self.ids.resize(self.pairs.len(), I::ZERO);
+        if self.ids.len() < self.len {
+            self.ids.resize(self.len, I::ZERO);
         }
-        for &(place, id) in &self.pairs {
+        for &(place, id) in &self.pairs[..self.len] {
             let next = &mut self.starts[place as usize + 1];
             self.ids[*next] = id;
             *next += 1;
         }
-        Block::new(block.start, &self.starts[..=block.len()], &self.ids[..self.pairs.len()])
+        Block::new(block.start, &self.starts[..=block.len()], &self.ids[..self.len])
     }
+}
+
+/// n over k.
+pub(super) fn binomial(n: usize, k: usize) -> usize {
+    let exact = (0..k as u64).fold(1_u64, |product, i| product * (n as u64 - i) / (i + 1));
+    usize::try_from(exact).unwrap_or(usize::MAX)
 }
 
 /// An id of the complex, which is an index of its width.

@@ -30,12 +30,12 @@ pub use block::Block;
 pub use ordered::in_order;
 use sig_core::{Complex, Dim, Index, SimplexId};
 
-use block::{Question, Sorter, narrow};
+use block::{Question, Sorter, binomial, narrow};
 use parts::Parts;
 use rows::Rows;
 
 /// Answers in a block, as a rule: few enough for the cache, many for what is read again at its edges.
-const BLOCK: usize = 1 << 19;
+const BLOCK: usize = 1 << 20;
 
 /// Sweeps over the simplices of a complex.
 ///
@@ -49,7 +49,7 @@ const BLOCK: usize = 1 << 19;
 ///
 /// # Memory
 ///
-/// For each thread 16 bytes for each of about 2^19 answers, 24 where indices are wider than 32 bits, and what `work` makes of
+/// For each thread 16 bytes for each of about 2^20 answers, 24 where indices are wider than 32 bits, and what `work` makes of
 /// eight blocks; of a simplex that has more answers, for as many as it has. Blocks that turn out larger are done in halves.
 pub struct Sweep<'c, 'a, I> {
     complex: &'c Complex<'a, I>,
@@ -129,9 +129,9 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         }
         if dim + 1 >= self.rows.dims() {
             // What a SIG stores at the facets of its largest simplices.
-            let cofacets = |facet: I, ids: &mut Vec<I>| {
+            let cofacets = |facet: I, except: I, ids: &mut Vec<I>| {
                 let entries = self.complex.partial_coboundary(SimplexId::new(facet.to_usize()));
-                ids.extend(entries.map(|entry| narrow::<I>(entry.index())));
+                ids.extend(entries.map(|entry| narrow::<I>(entry.index())).filter(|&entry| entry != except));
             };
             return self.across(dim, cofacets, work, each);
         }
@@ -145,10 +145,11 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         });
         let Ok(()) = kept;
         let first = self.rows.ids(dim - 1).start;
-        let cofacets = |facet: I, ids: &mut Vec<I>| {
+        let cofacets = |facet: I, except: I, ids: &mut Vec<I>| {
             let place = facet.to_usize().wrapping_sub(first);
             if let Some(&[start, end]) = starts.get(place..).and_then(|starts| starts.first_chunk()) {
-                ids.extend(all.get(start..end).unwrap_or_default());
+                let entries = all.get(start..end).unwrap_or_default().iter().copied();
+                ids.extend(entries.filter(|&entry| entry != except));
             }
         };
         self.across(dim, cofacets, work, each)
@@ -188,11 +189,11 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         in_order(blocks(ids, len), Sorter::new, answer, |results| results.into_iter().try_for_each(&mut each))
     }
 
-    /// The simplices across the facets, which `cofacets` adds to a list.
+    /// The simplices across the facets: `cofacets` adds those of one, all but a given one, to a list.
     fn across<T: Send, E>(
         &self,
         dim: Dim,
-        cofacets: impl Fn(I, &mut Vec<I>) + Sync,
+        cofacets: impl Fn(I, I, &mut Vec<I>) + Sync,
         work: impl Fn(&Block<'_, I>) -> T + Sync,
         mut each: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -208,14 +209,8 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
                     starts.clear();
                     starts.push(0);
                 }
-                let itself = narrow::<I>(id);
-                for &facet in row {
-                    let before = found.len();
-                    cofacets(facet, found);
-                    if let Some(place) = found[before..].iter().position(|&other| other == itself) {
-                        found.remove(before + place);
-                    }
-                }
+                let itself = narrow(id);
+                row.iter().for_each(|&facet| cofacets(facet, itself, found));
                 starts.push(found.len());
                 if found.len() >= self.block || id + 1 == block.end {
                     results.push(work(&Block::new(first, starts, found)));
@@ -230,8 +225,7 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
 
     /// How often simplices of one dimension are faces of those of another, or of their own.
     fn num_incidences(&self, dim: Dim, above: Dim) -> usize {
-        let each = (0..=dim as u64).fold(1_u64, |each, i| each * (above as u64 + 1 - i) / (i + 1));
-        self.rows.ids(above).len().saturating_mul(usize::try_from(each).unwrap_or(usize::MAX))
+        self.rows.ids(above).len().saturating_mul(binomial(above + 1, dim + 1))
     }
 
     /// How many of `count` simplices, which have `answers` together, make a block; of few, so many that each thread has some.

@@ -63,26 +63,29 @@ impl<'a, I: Index> Rows<'a, I> {
         (1..=dim).rev().fold(id, |id, dim| self.row(dim, id).last().map_or(0, |parent| parent.to_usize()))
     }
 
-    /// Calls `visit` with the faces that lack `omitted` of the first `positions` vertices of a simplex, given by its facets,
-    /// and none of the others: each once.
+    /// Calls `visit` with the faces that lack `omitted` of the first vertices of a simplex, as many as `row` has facets, and
+    /// none of the others: each once.
     ///
     /// Vertices are deleted by decreasing position (B_{p,q} without marks): a row is read for all faces but the last step,
     /// none of them that of the facet without the first vertex, so all are near the simplex in the order of ids.
     #[inline]
-    pub(super) fn faces<F: FnMut(I)>(
-        &self,
-        dim: Dim,
-        row: &'a [I],
-        positions: usize,
-        omitted: usize,
-        visit: &mut F,
-    ) {
-        let row = row.get(..positions).unwrap_or(row);
-        if omitted == 1 {
-            return row.iter().for_each(|&face| visit(face));
+    pub(super) fn faces<F: FnMut(I)>(&self, dim: Dim, row: &'a [I], omitted: usize, visit: &mut F) {
+        // The last two steps are loops, for calls would take as long.
+        match omitted {
+            1 => row.iter().for_each(|&face| visit(face)),
+            2 => {
+                for (position, facet) in row.iter().enumerate().skip(1) {
+                    self.row(dim - 1, facet.to_usize()).iter().take(position).for_each(|&face| visit(face));
+                }
+            }
+            _ => self.far_faces(dim, row, omitted, visit),
         }
+    }
+
+    fn far_faces<F: FnMut(I)>(&self, dim: Dim, row: &'a [I], omitted: usize, visit: &mut F) {
         for (position, facet) in row.iter().enumerate().skip(omitted - 1) {
-            self.faces(dim - 1, self.row(dim - 1, facet.to_usize()), position, omitted - 1, visit);
+            let facets = self.row(dim - 1, facet.to_usize());
+            self.faces(dim - 1, facets.get(..position).unwrap_or(facets), omitted - 1, visit);
         }
     }
 }
