@@ -15,7 +15,7 @@ use super::input::How;
 use super::query::{OfDim, Relation};
 use super::{Threads, UsageError, output};
 
-/// Print a relation of all simplices of a dimension: all vertex stars, all adjacencies, …
+/// Print a relation of all simplices of a dimension, a line each
 ///
 /// A line for each simplex, in the order of the ids: the simplex, then each simplex of the answer, with a tab before it.
 /// Simplices are labels separated by commas. With --json each line is an object, `simplex` an array of labels, `found` an

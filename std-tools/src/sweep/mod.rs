@@ -76,8 +76,8 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
     /// C_{p,g} of all p-simplices: nothing for g ≤ p or g > d.
     ///
     /// Cost: about that of reading the boundary rows from dimension p + 1 to g in order, and of writing the answers. Rows
-    /// near the edge of a block are read again for the next, twice as often as once where the vertices are numbered so that
-    /// neighbours have near numbers. Where they are numbered at random, all rows are read for each block.
+    /// near the edge of a block are read again for the next: as many again, or fewer, where neighbours have near numbers; where
+    /// vertices are numbered at random, all rows for each block. For g = d = p + 1 the lists of the file are the answers.
     ///
     /// # Errors
     /// The first of `each`.
@@ -88,6 +88,9 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         work: impl Fn(&Block<'_, I>) -> T + Sync,
         each: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
+        if of_dim == dim + 1 && of_dim + 1 == self.rows.dims() {
+            return self.collect(dim, 2, |id, found| found.extend(self.listed(id)), work, each);
+        }
         let dims = if of_dim > dim { of_dim..(of_dim + 1).min(self.rows.dims()) } else { 0..0 };
         self.invert(dim, &Question::Cofaces(dims), work, each)
     }
@@ -112,8 +115,7 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
     ///
     /// Two simplices share one facet at most, so none comes twice.
     ///
-    /// Cost: for vertices and for p = d one pass over the edges, or over the d-simplices and their facets' lists, and the
-    /// answers. For 0 < p < d the sweep of C_{p−1,p} comes before, whose answers are kept: as many indices as the boundary
+    /// Cost: for vertices as C_{0,1}; for p = d a look at the lists of all facets; and the answers. For 0 < p < d the sweep of C_{p−1,p} comes before, whose answers are kept: as many indices as the boundary
     /// rows of the p-simplices have, and a number for each (p−1)-simplex.
     ///
     /// # Errors
@@ -128,12 +130,12 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
             return self.invert(0, &Question::OtherEnds, work, each);
         }
         if dim + 1 >= self.rows.dims() {
-            // What a SIG stores at the facets of its largest simplices.
-            let cofacets = |facet: I, except: I, ids: &mut Vec<I>| {
-                let entries = self.complex.partial_coboundary(SimplexId::new(facet.to_usize()));
-                ids.extend(entries.map(|entry| narrow::<I>(entry.index())).filter(|&entry| entry != except));
+            let across = |id: usize, found: &mut Vec<I>| {
+                let itself = narrow(id);
+                let facets = self.rows.row(dim, id).iter();
+                facets.for_each(|&facet| found.extend(self.listed(facet.to_usize()).filter(|&other| other != itself)));
             };
-            return self.across(dim, cofacets, work, each);
+            return self.collect(dim, dim + 1, across, work, each);
         }
         let (mut starts, mut all) = (vec![0], Vec::new());
         let lists = |block: &Block<'_, I>| (block.starts().to_vec(), block.ids().to_vec());
@@ -145,14 +147,23 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         });
         let Ok(()) = kept;
         let first = self.rows.ids(dim - 1).start;
-        let cofacets = |facet: I, except: I, ids: &mut Vec<I>| {
-            let place = facet.to_usize().wrapping_sub(first);
-            if let Some(&[start, end]) = starts.get(place..).and_then(|starts| starts.first_chunk()) {
-                let entries = all.get(start..end).unwrap_or_default().iter().copied();
-                ids.extend(entries.filter(|&entry| entry != except));
+        let across = |id: usize, found: &mut Vec<I>| {
+            let itself = narrow(id);
+            for facet in self.rows.row(dim, id) {
+                let place = facet.to_usize().wrapping_sub(first);
+                if let Some(&[start, end]) = starts.get(place..).and_then(|starts| starts.first_chunk()) {
+                    let cofacets = all.get(start..end).unwrap_or_default().iter().copied();
+                    found.extend(cofacets.filter(|&other| other != itself));
+                }
             }
         };
-        self.across(dim, cofacets, work, each)
+        self.collect(dim, dim + 1, across, work, each)
+    }
+
+    /// What a SIG stores for a simplex; of one of dimension d − 1 the d-simplices around it, by increasing id.
+    #[inline]
+    fn listed(&self, simplex: usize) -> impl Iterator<Item = I> + use<'a, I> {
+        self.complex.partial_coboundary(SimplexId::new(simplex)).map(|entry| narrow(entry.index()))
     }
 
     /// Answers a question by inversion.
@@ -189,28 +200,28 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         in_order(blocks(ids, len), Sorter::new, answer, |results| results.into_iter().try_for_each(&mut each))
     }
 
-    /// The simplices across the facets: `cofacets` adds those of one, all but a given one, to a list.
-    fn across<T: Send, E>(
+    /// What `answer` adds to a list for each simplex, about `each_has` for one.
+    fn collect<T: Send, E>(
         &self,
         dim: Dim,
-        cofacets: impl Fn(I, I, &mut Vec<I>) + Sync,
+        each_has: usize,
+        answer: impl Fn(usize, &mut Vec<I>) + Sync,
         work: impl Fn(&Block<'_, I>) -> T + Sync,
         mut each: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let ids = self.rows.ids(dim);
-        // As many as on a manifold, about; a block ends where there are too many.
-        let len = self.num_in_block(ids.len().saturating_mul(dim + 1), ids.len());
-        let answer = |(starts, found): &mut (Vec<usize>, Vec<I>), block: Range<usize>| {
+        // A block ends where there are too many answers.
+        let len = self.num_in_block(ids.len().saturating_mul(each_has), ids.len());
+        let answers = |(starts, found): &mut (Vec<usize>, Vec<I>), block: Range<usize>| {
             let mut results = Vec::new();
             let mut first = block.start;
-            for (id, row) in block.clone().zip(self.rows.of(dim, block.clone()).chunks_exact(dim + 1)) {
+            for id in block.clone() {
                 if id == first {
                     found.clear();
                     starts.clear();
                     starts.push(0);
                 }
-                let itself = narrow(id);
-                row.iter().for_each(|&facet| cofacets(facet, itself, found));
+                answer(id, found);
                 starts.push(found.len());
                 if found.len() >= self.block || id + 1 == block.end {
                     results.push(work(&Block::new(first, starts, found)));
@@ -220,7 +231,7 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
             results
         };
         let init = || (Vec::new(), Vec::new());
-        in_order(blocks(ids, len), init, answer, |results| results.into_iter().try_for_each(&mut each))
+        in_order(blocks(ids, len), init, answers, |results| results.into_iter().try_for_each(&mut each))
     }
 
     /// How often simplices of one dimension are faces of those of another, or of their own.
