@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
     println!("{} bytes, {} threads, medians of {ROUNDS} rounds", map.bytes().len(), rayon::current_num_threads());
     with_complex!(map.complex()?, complex => {
         // All pages are mapped before anything is measured.
-        pass(&[map.bytes()], 0);
+        pass(&[map.bytes()], &mut []);
         if wanted("sweeps") {
             sweeps(&complex)?;
         }
@@ -75,63 +75,115 @@ pub(crate) fn watched(arguments: &[String]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The sweeps: what is asked, of which dimension, and from which dimension to which the boundary rows are read.
-fn sweeps<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn Error>> {
-    let top = complex.dim().ok_or("an empty complex")?;
-    let sweep = Sweep::new(complex);
-    println!(
-        "\nsweeps; the pass reads the arrays involved and writes as many bytes as there are answers, on as many threads"
-    );
-    println!(
-        "relation      answers   read, MB  answers, MB   pass, ms   sweep, ms  ratio   one thread: pass, ms   sweep, ms  ratio"
-    );
-    let count = |block: &Block<'_, I>| black_box(block).ids().len();
-    let report = |name: String, rows: std::ops::RangeInclusive<Dim>, lists: bool, run: &(dyn Fn() -> usize + Sync)| {
-        let bytes = arrays(complex, rows, lists);
-        let answers = run();
-        let written = answers * I::WIDTH.bytes();
-        let mut seconds = [(); 4].map(|()| Vec::new());
-        for _ in 0..ROUNDS {
-            seconds[0].push(timed(|| pass(&bytes, written)).0);
-            seconds[1].push(timed(run).0);
-            seconds[2].push(on_one_thread(|| timed(|| pass(&bytes, written)).0)?);
-            seconds[3].push(on_one_thread(|| timed(run).0)?);
-        }
-        let [pass, swept, pass_1, swept_1] = seconds.map(|samples| Timing::of(samples).median * 1e3);
-        let read: usize = bytes.iter().map(|bytes| bytes.len()).sum();
-        println!(
-            "{name:<10} {answers:>10} {:10.1} {:12.1} {pass:10.1} {swept:11.1} {:6.2} {pass_1:22.1} {swept_1:11.1} {:6.2}",
-            read as f64 / 1e6,
-            written as f64 / 1e6,
-            swept / pass,
-            swept_1 / pass_1,
-        );
-        Ok::<_, Box<dyn Error>>(())
-    };
-    let total = |sum: &mut usize, found: usize| {
-        *sum += found;
-        Ok::<_, std::convert::Infallible>(())
-    };
-    for dim in 0..top {
-        report(format!("star {dim}"), dim + 1..=top, false, &|| {
-            let mut sum = 0;
-            let Ok(()) = sweep.star(dim, count, |found| total(&mut sum, found));
-            sum
-        })?;
-        for above in dim + 1..=top {
-            report(format!("C_{dim},{above}"), dim + 1..=above, false, &|| {
-                let mut sum = 0;
-                let Ok(()) = sweep.coboundary(dim, above, count, |found| total(&mut sum, found));
-                sum
-            })?;
+/// A relation of all simplices of a dimension.
+#[derive(Clone, Copy)]
+enum Swept {
+    Star(Dim),
+    Cofaces(Dim, Dim),
+    Adjacent(Dim),
+}
+
+impl Swept {
+    fn name(self) -> String {
+        match self {
+            Self::Star(dim) => format!("star {dim}"),
+            Self::Cofaces(dim, above) => format!("C_{dim},{above}"),
+            Self::Adjacent(dim) => format!("A_{dim}"),
         }
     }
-    for dim in 0..=top {
-        report(format!("A_{dim}"), dim.max(1)..=dim.max(1), dim == top, &|| {
-            let mut sum = 0;
-            let Ok(()) = sweep.adjacency(dim, count, |found| total(&mut sum, found));
-            sum
-        })?;
+
+    /// Of which simplices, and up to which dimension from the next one the boundary rows are read.
+    fn dims(self, top: Dim) -> (Dim, Dim) {
+        match self {
+            Self::Star(dim) => (dim, top),
+            Self::Cofaces(dim, above) => (dim, above),
+            Self::Adjacent(0) => (0, 1),
+            Self::Adjacent(dim) => (dim, dim),
+        }
+    }
+
+    /// How many answers there are, all of them made.
+    fn sweep<I: Index>(self, sweep: &Sweep<'_, '_, I>) -> usize {
+        let mut sum = 0;
+        let count = |block: &Block<'_, I>| black_box(block).ids().len();
+        let each = |found: usize| {
+            sum += found;
+            Ok::<_, std::convert::Infallible>(())
+        };
+        let Ok(()) = match self {
+            Self::Star(dim) => sweep.star(dim, count, each),
+            Self::Cofaces(dim, above) => sweep.coboundary(dim, above, count, each),
+            Self::Adjacent(dim) => sweep.adjacency(dim, count, each),
+        };
+        sum
+    }
+
+    /// Seconds that the core takes for all simplices, one after the other: of a part of them in a row, times as many.
+    fn one_by_one<I: Index>(self, complex: &Complex<'_, I>, scratch: &mut Scratch<'_, I>) -> f64 {
+        const PART: usize = 32;
+        let (first, end) = complex.simplices_of_dim(self.dims(0).0).bounds();
+        let len = (end.index() - first.index()) / PART;
+        let start = first.index() + len * PART / 2;
+        let ask = |simplex: SimplexId| {
+            let found = match self {
+                Self::Star(_) => complex.star(simplex, scratch),
+                Self::Cofaces(_, above) => complex.coboundary(simplex, above, scratch),
+                Self::Adjacent(_) => complex.adjacency(simplex, scratch),
+            };
+            found.map_or(0, |found| found.map(black_box).count())
+        };
+        let (seconds, found) = timed(|| (start..start + len).map(SimplexId::new).map(ask).sum::<usize>());
+        black_box(found);
+        seconds * PART as f64
+    }
+}
+
+/// The sweeps beside the pass, on all threads and on one, and beside the queries of the core.
+fn sweeps<I: Index>(complex: &Complex<'_, I>) -> Result<(), Box<dyn Error>> {
+    let top = complex.dim().ok_or("an empty complex")?;
+    let mut memory = OwnedScratch::new(complex);
+    let mut scratch = memory.scratch();
+    let sweep = Sweep::new(complex);
+    println!(
+        "\nsweeps beside a pass that reads the arrays involved and writes the answers to memory, on as many threads"
+    );
+    println!(
+        "                                                ----- all threads -----  ------ one thread -----  the core"
+    );
+    println!(
+        "relation      answers   read, MB  answers, MB   pass, ms  sweep, ms  ratio  pass, ms  sweep, ms  ratio    ms"
+    );
+    let upward = (0..top).flat_map(|dim| {
+        std::iter::once(Swept::Star(dim)).chain((dim + 1..=top).map(move |above| Swept::Cofaces(dim, above)))
+    });
+    for relation in upward.chain((0..=top).map(Swept::Adjacent)) {
+        let (dim, last) = relation.dims(top);
+        let bytes = match relation {
+            // The lists of the file are the answers.
+            Swept::Cofaces(..) if dim + 1 == top => arrays(complex, top + 1..=top, true),
+            Swept::Adjacent(1..) => arrays(complex, dim..=last, dim == top),
+            _ => arrays(complex, dim + 1..=last, false),
+        };
+        let answers = relation.sweep(&sweep);
+        let mut written = vec![1_u8; answers * I::WIDTH.bytes()];
+        let mut seconds = [(); 4].map(|()| Vec::new());
+        for _ in 0..ROUNDS {
+            seconds[0].push(timed(|| pass(&bytes, &mut written)).0);
+            seconds[1].push(timed(|| relation.sweep(&sweep)).0);
+            seconds[2].push(on_one_thread(|| timed(|| pass(&bytes, &mut written)).0)?);
+            seconds[3].push(on_one_thread(|| timed(|| relation.sweep(&sweep)).0)?);
+        }
+        let [pass, swept, pass_1, swept_1] = seconds.map(|samples| Timing::of(samples).median * 1e3);
+        let megabytes = [bytes.iter().map(|bytes| bytes.len()).sum(), written.len()].map(|bytes| bytes as f64 / 1e6);
+        let (ratio, ratio_1) = (swept / pass, swept_1 / pass_1);
+        let core = relation.one_by_one(complex, &mut scratch) * 1e3;
+        println!(
+            "{:<10} {answers:>10} {:10.1} {:12.1} {pass:10.1} {swept:10.1} {ratio:6.1} {pass_1:9.1} {swept_1:10.1} {ratio_1:6.1} \
+             {core:9.0}",
+            relation.name(),
+            megabytes[0],
+            megabytes[1],
+        );
     }
     Ok(())
 }
@@ -142,7 +194,7 @@ fn arrays<'a, I: Index>(complex: &Complex<'a, I>, dims: std::ops::RangeInclusive
     let rows =
         |dims: std::ops::Range<Dim>| dims.map(|dim| complex.num_simplices_of_dim(dim) * (dim + 1)).sum::<usize>();
     let start = rows(1..*dims.start()) * I::WIDTH.bytes();
-    let len = rows(*dims.start()..dims.end() + 1) * I::WIDTH.bytes();
+    let len = rows(*dims.start()..(dims.end() + 1).max(*dims.start())) * I::WIDTH.bytes();
     let mut arrays = vec![&section(SectionKind::Boundary)[start..start + len]];
     if lists {
         arrays.extend([SectionKind::Pointers, SectionKind::Lists, SectionKind::Pairs].map(section));
@@ -150,22 +202,16 @@ fn arrays<'a, I: Index>(complex: &Complex<'a, I>, dims: std::ops::RangeInclusive
     arrays
 }
 
-/// Reads some arrays from their starts to their ends, and writes as many bytes as are asked for, in pieces that stay in the
-/// cache.
-fn pass(arrays: &[&[u8]], written: usize) {
+/// Reads some arrays from their starts to their ends, and writes another.
+fn pass(read: &[&[u8]], written: &mut [u8]) {
     const PIECE: usize = 1 << 18;
     let word = |word: &[u8]| u64::from_ne_bytes(word.try_into().unwrap_or_default());
-    for bytes in arrays {
+    for bytes in read {
         let sum = |piece: &[u8]| piece.chunks_exact(8).map(word).fold(0, u64::wrapping_add);
         black_box(bytes.par_chunks(PIECE).map(sum).reduce(|| 0, u64::wrapping_add));
     }
-    (0..written.div_ceil(PIECE)).into_par_iter().for_each_init(
-        || vec![0_u8; PIECE],
-        |piece, value| {
-            piece.fill(value as u8);
-            black_box(&*piece);
-        },
-    );
+    written.par_chunks_mut(PIECE).for_each(|piece| piece.fill(2));
+    black_box(written);
 }
 
 /// What is asked of single simplices, and of which dimension.
