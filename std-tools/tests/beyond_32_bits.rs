@@ -1,12 +1,12 @@
-//! Complexes of more than 2^32 simplices: files of more than a hundred gigabytes that are nearly all holes, which a file
-//! system does not store and which read as zero.
+//! Complexes of more than 2^32 simplices: files of more than a hundred gigabytes that are nearly all holes, which a
+//! file system does not store and which read as zero.
 //!
 //! At the ends of its vertices and of its tetrahedra such a complex has the simplices of a small one, all of whose ids,
-//! offsets and rows are thus past 2^32. Before them stand 2^32 vertices that are faces of nothing and 2^30 tetrahedra of
-//! zeros, which no question here leads to. Where the file system has no holes, or refuses files of the size, the tests say
-//! so and do nothing.
+//! offsets and rows are thus past 2^32. Before them stand 2^32 vertices that are faces of nothing and 2^30 tetrahedra
+//! of zeros, which no question here leads to. Where the file system has no holes, or refuses files of the size, the
+//! tests say so and do nothing.
 
-#![cfg(unix)]
+#![cfg(all(unix, target_pointer_width = "64"))]
 
 use std::fs::File;
 use std::io::{Result, Write};
@@ -58,8 +58,8 @@ impl Large<'_> {
         (0..dim).map(|dim| self.count(dim)).sum()
     }
 
-    /// The id of a simplex of the small complex, which is as far from the end of its dimension; a dimension's end, too, for
-    /// an id at that of the small one.
+    /// The id of a simplex of the small complex, which is as far from the end of its dimension; a dimension's end, too,
+    /// for an id at that of the small one.
     fn id(&self, dim: Dim, small: usize) -> usize {
         let (_, end) = self.small.simplices_of_dim(dim).bounds();
         self.start(dim + 1) - (end.index() - small)
@@ -101,8 +101,8 @@ impl Large<'_> {
             SectionKind::Lookup => (vec![(0, (0..4).map(|dim| self.start(dim) as u64).collect())], 4),
             SectionKind::Boundary => {
                 let (mut runs, mut rows) = (Vec::new(), 0);
-                for dim in 1..4 {
-                    rows += HOLES[dim] * (dim + 1);
+                for (dim, holes) in HOLES.into_iter().enumerate().skip(1) {
+                    rows += holes * (dim + 1);
                     let facets = |simplex| self.small.facets(simplex).map(|facet| self.of(facet).index() as u64);
                     let run: Vec<u64> = self.small.simplices_of_dim(dim).flat_map(facets).collect();
                     runs.push((rows, run.clone()));

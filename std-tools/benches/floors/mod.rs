@@ -1,5 +1,5 @@
-//! Queries against their floors: sweeps over all simplices beside a sequential pass over the same arrays, and random single
-//! queries on a file larger than the cache beside the misses of the cache that they cannot do without.
+//! Queries against their floors: sweeps over all simplices beside a sequential pass over the same arrays, and random
+//! single queries on a file larger than the cache beside the misses of the cache that they cannot do without.
 
 mod packed;
 

@@ -1,8 +1,10 @@
 //! What a packed variant would take and cost: a prototype of the boundary, the pointers and the lists in packed blocks.
 //!
-//! Each column of a block of 64 rows is its least value and the differences from it, in as many bits as the largest of them
-//! takes, with one more value for the stop code: an element is found at once, by the block's header and the bits. Canonical
-//! order makes the columns of a block alike, and that of the parents increasing.
+//! Each column of a block of 64 rows is its least value and the differences from it, in as many bits as the largest of
+//! them takes, with one more value for the stop code: an element is found at once, by the block's header and the bits.
+//! Canonical order makes the columns of a block alike, and that of the parents increasing.
+
+#![allow(clippy::cast_possible_truncation, reason = "a machine that has the files has words of 64 bits")]
 
 use std::error::Error;
 use std::hint::black_box;

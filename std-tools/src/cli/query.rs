@@ -167,7 +167,8 @@ impl Question {
 }
 
 impl Relation {
-    /// Refuses a dimension where there is none to choose, or that the relation of simplices of dimension `own` cannot have.
+    /// Refuses a dimension where there is none to choose, or that the relation of simplices of dimension `own` cannot
+    /// have.
     pub(super) fn check_dim(self, complex: &impl Relations, own: Dim, of: OfDim) -> Result<(), UsageError> {
         let Some(dim) = of.dim else { return Ok(()) };
         let top = complex.dim().unwrap_or(0);

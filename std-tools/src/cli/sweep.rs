@@ -17,12 +17,12 @@ use super::{Threads, UsageError, output};
 
 /// Print a relation of all simplices of a dimension, a line each
 ///
-/// A line for each simplex, in the order of the ids: the simplex, then each simplex of the answer, with a tab before it.
-/// Simplices are labels separated by commas. With --json each line is an object, `simplex` an array of labels, `found` an
-/// array of these. Lines come as they are found.
+/// A line for each simplex, in the order of the ids: the simplex, then each simplex of the answer, with a tab before
+/// it. Simplices are labels separated by commas. With --json each line is an object, `simplex` an array of labels,
+/// `found` an array of these. Lines come as they are found.
 ///
-/// Stars, cofaces and adjacencies of a file of kind sig are found by passes over the file, all others by a query for each
-/// simplex; on all threads.
+/// Stars, cofaces and adjacencies of a file of kind sig are found by passes over the file, all others by a query for
+/// each simplex; on all threads.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

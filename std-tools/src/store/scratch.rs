@@ -36,14 +36,14 @@ impl<I: Index> OwnedScratch<I> {
     /// and a queue entry for each vertex.
     ///
     /// That is enough for every query but [`k_adjacency`](Relations::k_adjacency) (and so
-    /// [`adjacency`](Relations::adjacency)) around very many simplices of high dimension, which gathers repetitions: see
-    /// [`run`](Self::run). The entries are 2^28 at most, for systems refuse to promise more memory than they have; a query
-    /// with an answer larger than that is one for [`run`](Self::run), too.
+    /// [`adjacency`](Relations::adjacency)) around very many simplices of high dimension, which gathers repetitions:
+    /// see [`run`](Self::run). The entries are 2^28 at most, for systems refuse to promise more memory than they have;
+    /// a query with an answer larger than that is one for [`run`](Self::run), too.
     #[must_use]
     pub fn new(complex: &impl Relations<Index = I>) -> Self {
         let simplices = complex.num_simplices();
-        // Vertices without edges take no bytes, and there may be any number of them. An answer has none of them but the one
-        // that was asked for.
+        // Vertices without edges take no bytes, and there may be any number of them. An answer has none of them but the
+        // one that was asked for.
         let count = if complex.dim() == Some(0) { 1 } else { simplices.min(MOST) };
         let queue =
             if complex.dim() == Some(0) { 1 } else { simplices.saturating_add(complex.num_vertices()).min(MOST) };

@@ -88,7 +88,7 @@ impl<I: Index> Sorter<I> {
         room: usize,
     ) -> Result<Block<'_, I>, Overflow> {
         self.begin(block.len());
-        let around = parts.around(dim, block.clone());
+        let around = parts.around(dim, &block);
         let dims = match question {
             Question::Cofaces(dims) => dims.clone(),
             Question::OtherEnds => 1..2,
@@ -114,7 +114,7 @@ impl<I: Index> Sorter<I> {
                 }
             }
         }
-        Ok(self.sort(block))
+        Ok(self.sort(&block))
     }
 
     /// Forgets what was answered before.
@@ -132,9 +132,10 @@ impl<I: Index> Sorter<I> {
         }
     }
 
-    /// Adds to the answer of the simplex at a place; to none, for a place past the block. Without a branch: which faces of a
-    /// simplex are in a block is not to be foreseen.
+    /// Adds to the answer of the simplex at a place; to none, for a place past the block. Without a branch: which faces
+    /// of a simplex are in a block is not to be foreseen.
     #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "a block has less than 2^32 simplices")]
     fn push(&mut self, place: usize, id: I) {
         let end = self.starts.len() - 3;
         let clamped = place.min(end);
@@ -154,7 +155,7 @@ impl<I: Index> Sorter<I> {
         (dim, block): (Dim, &Range<usize>),
         (above, ids): (Dim, Range<usize>),
     ) {
-        for (id, row) in ids.clone().zip(rows.of(above, ids).chunks_exact(above + 1)) {
+        for (id, row) in ids.clone().zip(rows.of(above, &ids).chunks_exact(above + 1)) {
             let coface = narrow(id);
             rows.faces(above, row, above - dim, &mut |face: I| {
                 self.push(face.to_usize().wrapping_sub(block.start), coface);
@@ -164,14 +165,14 @@ impl<I: Index> Sorter<I> {
 
     /// Adds each end of some edges to the answer of the other one, if that is in the block.
     fn push_ends(&mut self, rows: &Rows<'_, I>, block: &Range<usize>, edges: Range<usize>) {
-        for ends in rows.of(1, edges).chunks_exact(2) {
+        for ends in rows.of(1, &edges).chunks_exact(2) {
             self.push(ends[1].to_usize().wrapping_sub(block.start), ends[0]);
             self.push(ends[0].to_usize().wrapping_sub(block.start), ends[1]);
         }
     }
 
     /// Sorts the pairs by place; those of one place keep their order.
-    fn sort(&mut self, block: Range<usize>) -> Block<'_, I> {
+    fn sort(&mut self, block: &Range<usize>) -> Block<'_, I> {
         // The counts are shifted by two, so that filling in moves each start to where it belongs.
         for place in 2..self.starts.len() {
             self.starts[place] += self.starts[place - 1];

@@ -1,18 +1,19 @@
 //! A relation of all simplices of a dimension at once: all vertex stars, all co-boundaries of edges, all adjacencies.
 //!
-//! One question about one simplex is answered by the core, which walks its star. For all of them that reads the same rows
-//! again and again; a [`Sweep`] inverts the boundary instead: it goes through the simplices above, in the order in which they
-//! lie, and notes each with those of its faces that are in the block at hand, which a counting sort by face then brings
-//! together. Blocks are worked on by all threads, each in memory of a bounded size, and come in order.
+//! One question about one simplex is answered by the core, which walks its star. For all of them that reads the same
+//! rows again and again; a [`Sweep`] inverts the boundary instead: it goes through the simplices above, in the order in
+//! which they lie, and notes each with those of its faces that are in the block at hand, which a counting sort by face
+//! then brings together. Blocks are worked on by all threads, each in memory of a bounded size, and come in order.
 //!
 //! The answers are those of [`sig_core::Relations`], by increasing id.
 //!
 //! ```
-//! # use std::convert::Infallible;
+//! use std::convert::Infallible;
+//! use sig_tools::sweep::{Block, Sweep};
 //! # fn sweep(complex: &sig_core::Complex<'_, u32>) -> Result<(), Infallible> {
 //! // The number of tetrahedra at each vertex.
-//! let sweep = sig_tools::sweep::Sweep::new(complex);
-//! let count = |block: &sig_tools::sweep::Block<'_, u32>| block.iter().map(|(_, found)| found.len()).collect::<Vec<_>>();
+//! let sweep = Sweep::new(complex);
+//! let count = |block: &Block<'_, u32>| block.iter().map(|(_, found)| found.len()).collect::<Vec<_>>();
 //! let mut counts = Vec::new();
 //! sweep.coboundary(0, 3, count, |block: Vec<usize>| Ok::<_, Infallible>(counts.extend(block)))
 //! # }
@@ -43,14 +44,15 @@ const BLOCK: usize = 1 << 20;
 ///
 /// # Order and threads
 ///
-/// Every sweep takes two functions. The first one, `work`, is given blocks of consecutive simplices with their answers, on
-/// any thread; the second one, `each`, what `work` makes of them, in the order of the ids, on the thread of the caller.
-/// Errors of the second one end the sweep.
+/// Every sweep takes two functions. The first one, `work`, is given blocks of consecutive simplices with their answers,
+/// on any thread; the second one, `each`, what `work` makes of them, in the order of the ids, on the thread of the
+/// caller. Errors of the second one end the sweep.
 ///
 /// # Memory
 ///
-/// For each thread 16 bytes for each of about 2^20 answers, 24 where indices are wider than 32 bits, and what `work` makes of
-/// eight blocks; of a simplex that has more answers, for as many as it has. Blocks that turn out larger are done in halves.
+/// For each thread 12 bytes an answer, or 24 where indices are wider than 32 bits, for up to 2^21 answers; and what
+/// `work` makes of eight blocks. Of a simplex that has more answers, for as many as it has. Blocks that turn out larger
+/// are done in halves.
 pub struct Sweep<'c, 'a, I> {
     complex: &'c Complex<'a, I>,
     rows: Rows<'a, I>,
@@ -59,8 +61,8 @@ pub struct Sweep<'c, 'a, I> {
 }
 
 impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
-    /// Sweeps over a complex. Cost: none yet; the first sweep that looks upwards makes one pass over the edges, and keeps
-    /// two numbers for each few thousand simplices.
+    /// Sweeps over a complex. Cost: none yet; the first sweep that looks upwards makes one pass over the edges, and
+    /// keeps two numbers for each few thousand simplices.
     #[must_use]
     pub fn new(complex: &'c Complex<'a, I>) -> Self {
         let rows = Rows::new(complex);
@@ -75,9 +77,10 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
 
     /// C_{p,g} of all p-simplices: nothing for g ≤ p or g > d.
     ///
-    /// Cost: about that of reading the boundary rows from dimension p + 1 to g in order, and of writing the answers. Rows
-    /// near the edge of a block are read again for the next: as many again, or fewer, where neighbours have near numbers; where
-    /// vertices are numbered at random, all rows for each block. For g = d = p + 1 the lists of the file are the answers.
+    /// Cost: about that of reading the boundary rows from dimension p + 1 to g in order, and of writing the answers.
+    /// Rows near the edge of a block are read again for the next: as many again, or fewer, where neighbours have near
+    /// numbers; where vertices are numbered at random, all rows for each block. For g = d = p + 1 the lists of the file
+    /// are the answers.
     ///
     /// # Errors
     /// The first of `each`.
@@ -110,13 +113,14 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         self.invert(dim, &Question::Cofaces(dim..self.rows.dims()), work, each)
     }
 
-    /// A_p of all p-simplices: for p > 0 the other ones across each facet, facet after facet, by increasing id across each;
-    /// for vertices the other ends of their edges, by increasing id.
+    /// A_p of all p-simplices: for p > 0 the other ones across each facet, facet after facet, by increasing id across
+    /// each; for vertices the other ends of their edges, by increasing id.
     ///
     /// Two simplices share one facet at most, so none comes twice.
     ///
-    /// Cost: for vertices as C_{0,1}; for p = d a look at the lists of all facets; and the answers. For 0 < p < d the sweep of C_{p−1,p} comes before, whose answers are kept: as many indices as the boundary
-    /// rows of the p-simplices have, and a number for each (p−1)-simplex.
+    /// Cost: for vertices as C_{0,1}; for p = d a look at the lists of all facets; and the answers. For 0 < p < d the
+    /// sweep of C_{p−1,p} comes before, whose answers are kept: as many indices as the boundary rows of the p-simplices
+    /// have, and a number for each (p−1)-simplex.
     ///
     /// # Errors
     /// The first of `each`.
@@ -239,7 +243,8 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         self.rows.ids(above).len().saturating_mul(binomial(above + 1, dim + 1))
     }
 
-    /// How many of `count` simplices, which have `answers` together, make a block; of few, so many that each thread has some.
+    /// How many of `count` simplices, which have `answers` together, make a block; of few, so many that each thread has
+    /// some.
     fn num_in_block(&self, answers: usize, count: usize) -> usize {
         let most = u32::MAX as usize / 2;
         let by_answers = (self.block as u128 * count as u128 / answers.max(1) as u128).min(most as u128);

@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 /// Does `work` on each of some jobs, on all threads, and hands the results to `each` in the order of the jobs, on this
-/// thread: those of one batch of jobs while the next one is worked on. So no more results than of two batches wait, of four
-/// jobs a thread each. A job works with a value that `init` makes, which others have used before.
+/// thread: those of one batch of jobs while the next one is worked on. So no more results than of two batches wait, of
+/// four jobs a thread each. A job works with a value that `init` makes, which others have used before.
 ///
 /// # Errors
 /// The first of `each`; no more work is begun then.

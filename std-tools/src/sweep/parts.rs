@@ -1,8 +1,9 @@
-//! The vertices in parts, and which parts are joined by edges: where the cofaces of a block of simplices are looked for.
+//! The vertices in parts, and which parts are joined by edges: where the cofaces of a block of simplices are looked
+//! for.
 //!
 //! In canonical order the simplices of one dimension that begin with a vertex of a part are consecutive. A simplex that
-//! begins in part A has a face that begins in part B only if there is an edge from a vertex of A to one of B, or A is B.
-//! So the cofaces of simplices that begin in B begin in the parts that have an edge into B, none of them after B.
+//! begins in part A has a face that begins in part B only if there is an edge from a vertex of A to one of B, or A is
+//! B. So the cofaces of simplices that begin in B begin in the parts that have an edge into B, none of them after B.
 
 use std::ops::Range;
 
@@ -24,8 +25,8 @@ pub(super) struct Parts {
 impl Parts {
     /// Parts of about `size` simplices of the dimension that has the most of them, or of one vertex that has more.
     ///
-    /// Cost: one pass over the edges, on all threads; two numbers for each part and each two that are joined, and one for
-    /// each vertex while it runs.
+    /// Cost: one pass over the edges, on all threads; two numbers for each part and each two that are joined, and one
+    /// for each vertex while it runs.
     pub(super) fn new<I: Index>(rows: &Rows<'_, I>, size: usize) -> Self {
         let largest = (0..rows.dims()).max_by_key(|&dim| rows.ids(dim).len()).unwrap_or(0);
         let sampled = rows.ids(largest).step_by(size.max(1)).map(|id| rows.first_vertex(largest, id));
@@ -53,7 +54,7 @@ impl Parts {
         for (part, bounds) in (0..).zip(first.windows(2)) {
             part_of[bounds[0]..bounds[1]].fill(part);
         }
-        let ends_of = |part: usize| rows.of(1, self.ids(1, part)).chunks_exact(2).map(|ends| ends[0].to_usize());
+        let ends_of = |part: usize| rows.of(1, &self.ids(1, part)).chunks_exact(2).map(|ends| ends[0].to_usize());
         // For each part the ones that its edges lead into.
         let out: Vec<Vec<u32>> = (0..self.len())
             .into_par_iter()
@@ -100,7 +101,7 @@ impl Parts {
     }
 
     /// The parts in which cofaces of consecutive simplices of a dimension begin, increasing.
-    pub(super) fn around(&self, dim: Dim, ids: Range<usize>) -> Vec<usize> {
+    pub(super) fn around(&self, dim: Dim, ids: &Range<usize>) -> Vec<usize> {
         let Some(starts) = self.starts.get(dim).filter(|_| !ids.is_empty()) else { return Vec::new() };
         let part_of = |id: usize| starts.partition_point(|&start| start <= id).saturating_sub(1);
         let own = part_of(ids.start)..(part_of(ids.end - 1) + 1).min(self.len());

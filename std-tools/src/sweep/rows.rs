@@ -44,7 +44,7 @@ impl<'a, I: Index> Rows<'a, I> {
     }
 
     /// The facets of consecutive simplices of one dimension.
-    pub(super) fn of(&self, dim: Dim, ids: Range<usize>) -> &'a [I] {
+    pub(super) fn of(&self, dim: Dim, ids: &Range<usize>) -> &'a [I] {
         let Some(level) = self.levels.get(dim) else { return &[] };
         let entry = |id: usize| id.saturating_sub(level.ids.start).saturating_mul(dim + 1);
         level.facets.get(entry(ids.start)..entry(ids.end)).unwrap_or_default()
@@ -63,11 +63,11 @@ impl<'a, I: Index> Rows<'a, I> {
         (1..=dim).rev().fold(id, |id, dim| self.row(dim, id).last().map_or(0, |parent| parent.to_usize()))
     }
 
-    /// Calls `visit` with the faces that lack `omitted` of the first vertices of a simplex, as many as `row` has facets, and
-    /// none of the others: each once.
+    /// Calls `visit` with the faces that lack `omitted` of the first vertices of a simplex, as many as `row` has
+    /// facets, and none of the others: each once.
     ///
-    /// Vertices are deleted by decreasing position (B_{p,q} without marks): a row is read for all faces but the last step,
-    /// none of them that of the facet without the first vertex, so all are near the simplex in the order of ids.
+    /// Vertices are deleted by decreasing position (B_{p,q} without marks): a row is read for all faces but the last
+    /// step, none of them that of the facet without the first vertex, so all are near the simplex in the order of ids.
     #[inline]
     pub(super) fn faces<F: FnMut(I)>(&self, dim: Dim, row: &'a [I], omitted: usize, visit: &mut F) {
         // The last two steps are loops, for calls would take as long.
