@@ -154,7 +154,7 @@ impl<'a, I: Cell> Columns<'a, I> {
 
     /// The simplices that begin with an edge.
     #[inline]
-    fn from_edge(&self, edge: I) -> Range<usize> {
+    fn beginning_with(&self, edge: I) -> Range<usize> {
         let id = self.arrays.first[1] + edge.to_usize();
         descendant(self.arrays, id, 1, self.dim)..descendant(self.arrays, id + 1, 1, self.dim)
     }
@@ -202,7 +202,7 @@ impl<'a, I: Cell> Columns<'a, I> {
         let rows = self.arrays.facets(self.dim);
         let first_facet = self.arrays.first[self.dim - 1];
         for &edge in self.of_vertices.edges(vertex) {
-            for top in self.from_edge(edge).filter(|&top| is_wanted(top)) {
+            for top in self.beginning_with(edge).filter(|&top| is_wanted(top)) {
                 visit(rows[top * (self.dim + 1)].to_usize() - first_facet, top);
             }
         }

@@ -49,7 +49,6 @@ fn head(len: usize, mark: u8) -> u32 {
 }
 
 /// The words in records: how each is listed, 0 of the tail of one that starts in another bucket, and its vertices.
-#[expect(clippy::cast_possible_truncation, reason = "two bits")]
 pub(super) fn records(flat: &[u32]) -> impl Iterator<Item = (u8, &[u32])> {
     let mut rest = flat;
     std::iter::from_fn(move || {
@@ -204,7 +203,6 @@ fn deal(rows: &[u32], dim: Dim, order: &Order, bits: u32, words: &mut Vec<u32>) 
 /// Calls `visit` with every tail that goes to a bucket: each word with its mark, and what is left of it from a vertex on
 /// that is of another bucket than the one before.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "two bits")]
 fn for_each_tail(words: &[u32], dim: Dim, bits: u32, mut visit: impl FnMut(&[u32], u8)) {
     for record in words.chunks_exact(dim + 2) {
         let (mark, word) = ((record[0] & 3) as u8, &record[1..]);
