@@ -1,31 +1,47 @@
-//! What a tetrahedral mesh costs: building its SIG, its file, opening it, and the star of every vertex.
+//! What a mesh costs: building its SIG, its file, opening it, and the star of every vertex.
 //!
 //! ```text
-//! cargo bench --bench mesh                         all of it, on Freudenthal (Kuhn) grids of 26³, 56³, 121³ vertices
-//! cargo bench --bench mesh -- 26 56                on grids of 26³ and 56³ vertices
-//! cargo bench --bench mesh -- skull.msh            on a tetrahedral mesh in a file
+//! cargo bench --bench mesh                         all of it, on grids of triangles, of tetrahedra, and mixed ones
+//! cargo bench --bench mesh -- 2d:10 3d:100 mixed:1 on a grid of about so many million simplices
+//! cargo bench --bench mesh -- skull.msh            on a mesh in a file
+//! cargo bench --bench mesh -- --build 3d:100       building alone
 //! GUDHI_MESH=./gudhi_mesh cargo bench --bench mesh with GUDHI's simplex tree in the same run (see benches/peers)
 //! ```
+//!
+//! Grids are Freudenthal's (Kuhn's); mixed ones are of tetrahedra, with a fin, a triangle that hangs on an edge, a triangle
+//! that hangs on a vertex and a wire edge on every fourth vertex each. The peer builds grids of tetrahedra.
+//!
+//! First touch: memory that is new to a process costs the system's time for each page, and the result is such memory. It is
+//! measured apart, by writing to each page of an allocation of the size of the result, on all threads.
 //!
 //! Machines are noisy, so whatever is compared is measured in turn, several rounds, and the medians are printed with
 //! their spread. Read the ratios.
 
+use std::convert::Infallible;
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
 
-use common::{Timing, figure, grid, peak_memory, run, timed};
+use common::{Timing, figure, peak_memory, run, timed};
+use rayon::prelude::*;
 use sig_core::format::{Column, SectionKind};
 use sig_core::{Complex, with_complex};
 use sig_tools::build::{BuildOptions, Built, build};
-use sig_tools::soup::Soup;
+use sig_tools::generate::Triangulation;
+use sig_tools::soup::{Labels, Soup};
 use sig_tools::store::{EncodeOptions, Encoding};
 use sig_tools::{Mapped, OwnedScratch};
 
 mod common;
 
 const ROUNDS: usize = 5;
+/// The most simplices, about, that are built as many times; more are built once.
+const MANY: f64 = 3e7;
+/// Bytes of a page of memory.
+const PAGE: usize = 4096;
+/// What is measured if nothing is asked for.
+const MESHES: [&str; 9] = ["2d:1", "2d:10", "2d:100", "3d:1", "3d:10", "3d:100", "mixed:1", "mixed:10", "mixed:100"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = common::arguments();
@@ -34,13 +50,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         return peak(mesh);
     }
-    let meshes = if arguments.is_empty() { ["26", "56", "121"].map(str::to_owned).to_vec() } else { arguments };
+    let (modes, mut meshes): (Vec<String>, _) = arguments.into_iter().partition(|argument| argument == "--build");
+    if meshes.is_empty() {
+        meshes = MESHES.map(str::to_owned).to_vec();
+    }
     println!("medians of {ROUNDS} rounds (least, most); threads: {}", rayon::current_num_threads());
     let folder = tempfile::tempdir()?;
     let mut opened = Vec::new();
     for (number, mesh) in meshes.iter().enumerate() {
         println!("\n{mesh}");
         let built = building(&soup_of(mesh)?, folder.path())?;
+        if !modes.is_empty() {
+            continue;
+        }
         let path = folder.path().join(format!("{number}.sigc"));
         filed(&built, &path)?;
         drop(built);
@@ -48,6 +70,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         opened.push((path.clone(), opening(&path)?));
         let map = Mapped::open(&path)?;
         with_complex!(map.complex()?, complex => stars(&complex)?);
+    }
+    if opened.is_empty() {
+        return Ok(());
     }
     println!("\nopening, alternating between the files:");
     for (path, _) in &opened {
@@ -58,29 +83,83 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The grid of so many vertices a side, or the mesh in a file.
+/// The grid of a kind and of so many million simplices, or the mesh in a file.
 fn soup_of(mesh: &str) -> Result<Soup, Box<dyn Error>> {
-    match mesh.parse() {
-        Ok(side) => Ok(grid(side)),
-        Err(_) => Ok(sig_tools::io::read_path(mesh, &sig_tools::io::ReadOptions::default())?.0),
+    let grid = mesh.split_once(':').and_then(|(kind, millions)| Some((kind, millions.parse::<f64>().ok()?)));
+    let Some((kind, millions)) = grid else {
+        return Ok(sig_tools::io::read_path(mesh, &sig_tools::io::ReadOptions::default())?.0);
+    };
+    // Simplices a vertex.
+    let (dim, ratio) = match kind {
+        "2d" => (2, 6.0),
+        "3d" => (3, 26.0),
+        "mixed" => (3, 29.0),
+        _ => return Err(format!("{kind}: 2d, 3d or mixed").into()),
+    };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a side of a few thousand vertices")]
+    let side = (millions * 1e6 / ratio).powf(1.0 / f64::from(dim)).round() as u32;
+    let sides = vec![side.max(2); dim as usize];
+    let grid = Triangulation::grid(&sides)?;
+    let mut soup = Soup::new(Labels::Numbered(grid.num_vertices() as usize), true);
+    grid.try_for_each(|simplex| {
+        soup.push(simplex);
+        Ok::<(), Infallible>(())
+    })?;
+    if kind == "mixed" {
+        hang(&mut soup, grid.num_vertices());
     }
+    Ok(soup)
 }
 
-/// Builds, on all threads and on one, and lets the peer do the same complex in turn.
+/// Hangs triangles and edges on the `count` vertices of a grid.
+fn hang(soup: &mut Soup, count: u32) {
+    let mut next = count;
+    for vertex in 0..count - 1 {
+        match vertex % 4 {
+            0 => soup.push(&[vertex, next, next + 1]),
+            1 => soup.push(&[vertex, vertex + 1, next]),
+            2 => soup.push(&[vertex, next]),
+            _ => {}
+        }
+        next += [2, 1, 1, 0][vertex as usize % 4];
+    }
+    soup.labels = Labels::Numbered(next as usize);
+}
+
+/// Builds, on all threads and on one, and lets the peer do the same complex in turn; then to the bytes of a file.
 fn building(soup: &Soup, folder: &Path) -> Result<Built, Box<dyn Error>> {
+    let only_tetrahedra = soup.simplices.iter().rposition(|flat| !flat.is_empty()) == Some(3)
+        && soup.simplices[..3].iter().all(Vec::is_empty);
+    let peer = std::env::var_os("GUDHI_MESH").filter(|_| only_tetrahedra);
     let tetrahedra = folder.join("tetrahedra");
-    std::fs::write(&tetrahedra, bytemuck::cast_slice(soup.simplices.get(3).map_or(&[][..], Vec::as_slice)))?;
+    if peer.is_some() {
+        std::fs::write(&tetrahedra, bytemuck::cast_slice(&soup.simplices[3]))?;
+    }
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let peer = std::env::var_os("GUDHI_MESH");
     let (mut all, mut single, mut peers) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut encoded, mut touched, mut copied) = (Vec::new(), Vec::new(), Vec::new());
     let mut last = None;
+    let num_listed = soup.num_listed();
     for _ in 0..ROUNDS {
         drop(last.take());
         let input = soup.clone();
         let (seconds, built) = timed(|| build(input, &BuildOptions::default()));
         let built = built?;
-        all.push(seconds / num_simplices(&built));
+        let count = num_simplices(&built);
+        all.push(seconds / count);
+        let bytes = {
+            let (seconds, bytes) = timed(|| Encoding::new(&built, &EncodeOptions::default())?.to_bytes());
+            encoded.push(seconds / count);
+            bytes?
+        };
+        let mut room = vec![0_u8; bytes.len()];
+        touched.push(timed(|| room.par_chunks_mut(PAGE).for_each(|page| page[0] = 1)).0 / count);
+        copied.push(timed(|| room.copy_from_slice(&bytes)).0 / count);
+        drop((black_box(room), bytes));
         last = Some(built);
+        if count > MANY {
+            break;
+        }
         let input = soup.clone();
         let (seconds, built) = timed(|| one.install(|| build(input, &BuildOptions::default())));
         single.push(seconds / num_simplices(&built?));
@@ -89,13 +168,19 @@ fn building(soup: &Soup, folder: &Path) -> Result<Built, Box<dyn Error>> {
         }
     }
     let built = last.ok_or("no round was run")?;
-    let (all, single) = (Timing::of(all), Timing::of(single));
-    println!("  building {:.0} simplices from {} listed:", num_simplices(&built), soup.num_listed());
-    println!("    all threads   {} a simplex", all.show(1e9, "ns"));
-    println!("    one thread    {} a simplex", single.show(1e9, "ns"));
+    let all = Timing::of(all);
+    println!("  building {:.0} simplices from {num_listed} listed, each:", num_simplices(&built));
+    println!("    all threads   {}", all.show(1e9, "ns"));
+    for (what, samples) in
+        [("one thread", &single), ("first touch", &touched), ("copy", &copied), ("to bytes", &encoded)]
+    {
+        if !samples.is_empty() {
+            println!("    {what:13} {}", Timing::of(samples.clone()).show(1e9, "ns"));
+        }
+    }
     if !peers.is_empty() {
-        let peers = Timing::of(peers);
-        println!("    GUDHI         {} a simplex", peers.show(1e9, "ns"));
+        let (peers, single) = (Timing::of(peers), Timing::of(single));
+        println!("    GUDHI         {}", peers.show(1e9, "ns"));
         println!(
             "    GUDHI / SIG   {:.2} all threads, {:.2} one",
             peers.median / all.median,
