@@ -97,7 +97,7 @@ mod tests {
         #[test]
         fn faces_are_all_subsets(
             mut simplices in prop::collection::vec(prop::collection::vec(0_u32..150, 1..6), 0..40),
-            hubs in prop::collection::vec(prop::collection::vec(50_u32..150, 0..4), 0..90),
+            hubs in prop::collection::vec(prop::collection::vec(50_u32..150, 0..4), 0..150),
             bucket in 0_usize..300,
         ) {
             simplices.extend(hubs.into_iter().map(|mut link| { link.push(49); link }));
@@ -111,6 +111,7 @@ mod tests {
             let listed_or_unused: Vec<Vec<u32>> = simplices.iter().cloned().chain((0..150).map(|v| vec![v])).collect();
             let words = all_faces(&listed_or_unused);
             prop_assert_eq!(arrays.num_simplices, words.len());
+            prop_assert_eq!(arrays.first.len(), words.last().map_or(0, Vec::len));
             let find = |word: &[u32]| words.binary_search_by_key(&(word.len(), word), |w| (w.len(), w)).unwrap();
             for dim in 0..arrays.first.len() {
                 for (number, id) in arrays.ids(dim).enumerate() {

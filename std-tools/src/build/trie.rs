@@ -302,6 +302,8 @@ impl Finder {
         }
         let mut levels = Vec::new();
         self.local.add_vertex(&mut levels, reservation)?;
+        // The last is empty, as it found that nothing is below.
+        levels.truncate(levels.iter().rposition(|level| !level.labels.is_empty()).map_or(1, |last| last + 1));
         bucket.make_room(levels.len() - 1);
         for (dim, level) in levels.iter_mut().enumerate().skip(1) {
             for (node, mark) in std::mem::take(&mut level.listed).into_iter().enumerate().filter(|(_, mark)| *mark != 0)
