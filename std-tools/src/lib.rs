@@ -12,6 +12,7 @@
 //! | simplices on disk | [`spool`] | [`spool::Spill`] |
 //! | points and metrics | [`points`] | [`points::Points`], [`points::Metric`] |
 //! | all distances of a finite space | [`distances`] | [`distances::Distances`] |
+//! | samples on a grid | [`volume`] | [`volume::Volume`], [`io::read_volume_path`] |
 //! | clouds that are the same anywhere | [`generate`] | [`generate::sphere4`] |
 //! | a few of many points | [`subsample`] | [`subsample::farthest_points`] |
 //! | pairs of near points | [`proximity`] | [`proximity::radius_graph`] |
@@ -88,6 +89,7 @@ pub mod store;
 pub mod subsample;
 pub mod sweep;
 pub mod tops;
+pub mod volume;
 pub mod witness;
 
 pub use store::{Loaded, Mapped, OwnedScratch, View};

@@ -36,6 +36,7 @@ mod sweep;
 mod tree;
 mod tree_input;
 mod verify;
+mod volume;
 mod witness;
 
 use std::io;

@@ -3,12 +3,15 @@
 //! [`Triangulation`] is a stream of simplices of any length. The rules of the clouds use nothing but SplitMix64 and IEEE
 //! + − × ÷ √, so any language gives the same bits; only [`klein_bottle_grid`] also uses the sine and cosine of the platform.
 
+mod induced;
 mod triangulation;
+mod vtu;
 
 use std::f64::consts::PI;
 
 use crate::points::Points;
 
+pub use induced::Vertices;
 pub use triangulation::{GenerateError, Triangulation};
 
 /// SplitMix64 (Steele, Lea and Flood, 2014), and uniform numbers from its upper 53 bits.

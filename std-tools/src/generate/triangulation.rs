@@ -1,13 +1,15 @@
 //! Triangulations of any size, one simplex after the other in memory that does not grow: [`Triangulation`].
 
+use std::convert::Infallible;
 use std::io::{self, Write};
 
 use sig_core::{Dim, MAX_DIM};
 
 use super::SplitMix64;
+use super::induced::{self, Vertices};
 
 /// The most sides of a grid: six have 720 simplices a cell.
-const MOST_SIDES: usize = 6;
+pub(super) const MOST_SIDES: usize = 6;
 
 /// A triangulation that is given by a rule: its top simplices can be listed without being kept.
 ///
@@ -23,16 +25,21 @@ const MOST_SIDES: usize = 6;
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Triangulation {
-    rule: Rule,
+    pub(super) rule: Rule,
     num_vertices: u32,
 }
 
 #[derive(Clone, PartialEq, Eq, Debug)]
-enum Rule {
+pub(super) enum Rule {
     /// Vertices along each side, and whether the sides are closed.
     Grid {
         sides: Vec<u32>,
         closed: bool,
+    },
+    /// The part of a grid between some of its vertices.
+    Induced {
+        sides: Vec<u32>,
+        kept: Vertices,
     },
     /// Edges along an edge of the octahedron.
     Sphere {
@@ -70,6 +77,9 @@ pub enum GenerateError {
         /// The vertices there are.
         vertices: u32,
     },
+    /// Parts are taken of grids.
+    #[error("only a grid with ends has parts between some of its vertices")]
+    NoGrid,
     /// There are more vertices than 32-bit numbers.
     #[error("more than 4294967294 vertices")]
     TooManyVertices,
@@ -118,6 +128,20 @@ impl Triangulation {
         Ok(Self { rule: Rule::Grid { sides: sides.to_vec(), closed }, num_vertices: vertices(count)? })
     }
 
+    /// The part of this grid whose simplices have all their vertices among `kept`: for the vertices where a field is at
+    /// least (at most) some value, the superlevel (sublevel) set of its linear interpolation, up to homotopy.
+    ///
+    /// Its maximal simplices are listed, of all dimensions; those of the greatest are oriented alike.
+    ///
+    /// # Errors
+    /// [`GenerateError::NoGrid`] of any other triangulation.
+    pub fn induced(self, kept: Vertices) -> Result<Self, GenerateError> {
+        match self.rule {
+            Rule::Grid { sides, closed: false } => Ok(Self { rule: Rule::Induced { sides, kept }, ..self }),
+            _ => Err(GenerateError::NoGrid),
+        }
+    }
+
     /// The 2-sphere as an octahedron with `steps` edges along each of its edges: 4n² + 2 vertices, 12n² edges and 8n²
     /// triangles for n = `steps` > 0, oriented alike. Vertices are numbered around the axis from pole to pole.
     ///
@@ -145,11 +169,11 @@ impl Triangulation {
         Ok(Self { rule: Rule::Random { dim, count, seed }, num_vertices: self::vertices(Some(vertices.into()))? })
     }
 
-    /// The dimension of the simplices.
+    /// The dimension of the simplices, or the greatest that they may have.
     #[must_use]
     pub fn dim(&self) -> Dim {
         match &self.rule {
-            Rule::Grid { sides, .. } => sides.len(),
+            Rule::Grid { sides, .. } | Rule::Induced { sides, .. } => sides.len(),
             Rule::Sphere { .. } => 2,
             Rule::Random { dim, .. } => *dim,
         }
@@ -162,15 +186,26 @@ impl Triangulation {
     }
 
     /// The number of simplices that are listed; `None` if that is no 64-bit number.
+    ///
+    /// Cost: constant, but that of listing them for parts of grids.
     #[must_use]
     pub fn num_listed(&self) -> Option<u64> {
         match &self.rule {
             Rule::Random { count, .. } => Some(*count),
+            Rule::Induced { .. } => {
+                let mut count = 0;
+                let Ok(()) = self.try_for_each(|_| {
+                    count += 1;
+                    Ok::<(), Infallible>(())
+                });
+                Some(count)
+            }
             _ => self.counts()?.last().copied(),
         }
     }
 
-    /// How many simplices of each dimension there are, by formula; `None` of random ones, and past 64 bits.
+    /// How many simplices of each dimension there are, by formula; `None` of random ones, and past 64 bits. Those of parts
+    /// of grids are counted one by one, without those of the greatest dimensions if there are none.
     #[must_use]
     pub fn counts(&self) -> Option<Vec<u64>> {
         match &self.rule {
@@ -196,6 +231,7 @@ impl Triangulation {
                 let square = u64::from(*steps) * u64::from(*steps);
                 Some(vec![4 * square + 2, 12 * square, 8 * square])
             }
+            Rule::Induced { sides, kept } => Some(induced::counts(sides, kept)),
             Rule::Random { .. } => None,
         }
     }
@@ -207,6 +243,7 @@ impl Triangulation {
     pub fn try_for_each<E>(&self, visit: impl FnMut(&[u32]) -> Result<(), E>) -> Result<(), E> {
         match &self.rule {
             Rule::Grid { sides, closed } => visit_grid(sides, *closed, visit),
+            Rule::Induced { sides, kept } => induced::visit(sides, kept, visit),
             Rule::Sphere { steps } => visit_sphere(*steps, visit),
             Rule::Random { dim, count, seed } => visit_random(self.num_vertices, *dim, *count, *seed, visit),
         }
@@ -235,6 +272,11 @@ impl Triangulation {
     /// That of the writer; [`io::ErrorKind::InvalidInput`] of any other triangulation, and of one with 2³² tetrahedra or more.
     pub fn write_tetbin(&self, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
         let invalid = |message| io::Error::new(io::ErrorKind::InvalidInput, message);
+        if matches!(self.rule, Rule::Induced { .. }) {
+            return Err(invalid(
+                "a part of a grid has simplices of several dimensions, and tetbin tetrahedra alone; use vtu",
+            ));
+        }
         let Rule::Grid { sides, closed: false } = &self.rule else {
             return Err(invalid("only a grid of three sides has tetrahedra with coordinates"));
         };
@@ -370,7 +412,6 @@ fn visit_random<E>(
 #[cfg(test)]
 mod tests {
     use std::collections::{BTreeMap, BTreeSet};
-    use std::convert::Infallible;
 
     use super::*;
 

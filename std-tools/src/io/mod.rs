@@ -39,6 +39,7 @@ mod tetbin;
 mod tetgen;
 mod text;
 mod tops;
+mod volume;
 mod vtk;
 mod weld;
 mod words;
@@ -53,6 +54,7 @@ pub use error::{ErrorKind, Excerpt, Position, ReadError};
 pub use format::Format;
 pub use merge::{MergeError, MergeReport, Renumbered, merge};
 pub use report::{Ignored, ReadReport};
+pub use volume::{Endian, read_volume_path};
 pub use weld::Weld;
 
 use crate::soup::Soup;
