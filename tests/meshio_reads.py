@@ -29,6 +29,7 @@ CASES = [
     ("formats/mixed.mesh", "b.vtu", "vtu", ALL),
     ("formats/mixed.mesh", "b.vtk", "vtk", ALL),
     ("torus.msh", "c.mesh", "medit", ALL),
+    ("torus.msh", "c.node", "tetgen", ALL),
     ("goathead.obj", "d.off", "off", ALL),
     ("goathead.obj", "d.ply", "ply", ALL),
     ("goathead.obj", "d.obj", "obj", ALL),

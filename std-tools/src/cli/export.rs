@@ -71,15 +71,38 @@ pub(super) fn write(input: &Input, name: &str, path: &Path, existing: Existing, 
     with_view!(view, complex => complex.validate()).with_context(|| format!("{name}: damaged; see sig verify"))?;
     with_view!(view, complex => export::check(&complex, format)).with_context(|| name.to_owned())?;
     let mut notes = Vec::new();
-    output::to_path(path, existing, |out| {
-        notes = with_view!(view, complex => export::export(&complex, format, out)).map_err(|error| match error {
-            ExportError::Io(error) => error,
-            other => io::Error::other(other),
-        })?;
-        Ok(())
-    })?;
+    let mut write = |path: &Path, file: &str| {
+        output::to_path(path, existing, |out| {
+            let written = with_view!(view, complex => export::export_file(&complex, format, file, out));
+            notes = written.map_err(|error| match error {
+                ExportError::Io(error) => error,
+                other => io::Error::other(other),
+            })?;
+            Ok(())
+        })
+    };
+    if format.files().is_empty() {
+        write(path, "")?;
+    } else {
+        let files = with_view!(view, complex => export::files(&complex, format));
+        clear(path, existing, format, &files)?;
+        files.iter().try_for_each(|file| write(&path.with_extension(file), file))?;
+    }
     for note in notes {
         output::log(format_args!("sig: note: {format}: {note}"));
+    }
+    Ok(())
+}
+
+/// Sees to it that beside a mesh of several files there are no others that would be taken for a part of it.
+fn clear(path: &Path, existing: Existing, format: Format, files: &[&str]) -> anyhow::Result<()> {
+    if output::is_stdout(path) {
+        return Err(UsageError(format!("{format} is several files, and standard output is one")).into());
+    }
+    let all = || format.files().iter().map(|file| (path.with_extension(file), files.contains(file)));
+    all().try_for_each(|(path, _)| output::check(&path, existing, &[]))?;
+    for (path, _) in all().filter(|(path, is_written)| !is_written && path.exists()) {
+        std::fs::remove_file(&path).with_context(|| format!("{}: cannot remove", path.display()))?;
     }
     Ok(())
 }

@@ -50,7 +50,8 @@ fn rows() -> Vec<Row> {
         name: format.name(),
         of: "complex",
         extensions: format.extensions(),
-        read: None,
+        // One of the variants of a format that goes by another name.
+        read: Format::from_name(format.name()).map(Format::description),
         written: Some(format.description()),
         loses: Some(format.loses()),
     });

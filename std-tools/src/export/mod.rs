@@ -18,8 +18,11 @@ mod simplex_list;
 mod stl;
 #[cfg(test)]
 mod tests;
+mod tetbin;
+mod tetgen;
 mod tops;
 mod vtk;
+mod vtp;
 pub(crate) mod vtu;
 
 use std::fmt;
@@ -54,6 +57,12 @@ pub enum Format {
     SimplexList,
     /// VTK's unstructured grid for ParaView: tetrahedra, triangles, lines, vertices, all in one grid.
     Vtu,
+    /// VTK's poly data: triangles, lines, vertices.
+    Vtp,
+    /// TetGen's files of nodes, elements, faces and edges.
+    Tetgen,
+    /// Tetrahedra in binary behind `TETB`.
+    Tetbin,
     /// glTF 2.0, for viewers: what is seen of a complex.
     Gltf,
     /// Points, and top simplices of any dimension, in text.
@@ -72,8 +81,11 @@ impl Format {
         Self::Msh,
         Self::Vtk,
         Self::Vtu,
+        Self::Vtp,
         Self::Medit,
         Self::Mfem,
+        Self::Tetgen,
+        Self::Tetbin,
         Self::Gltf,
         Self::Tops,
         Self::SimplexList,
@@ -91,6 +103,9 @@ impl Format {
             Self::Msh => "msh",
             Self::Vtk => "vtk",
             Self::Vtu => "vtu",
+            Self::Vtp => "vtp",
+            Self::Tetgen => "tetgen",
+            Self::Tetbin => "tetbin",
             Self::Medit => "medit",
             Self::Mfem => "mfem",
             Self::Gltf => "gltf",
@@ -111,6 +126,9 @@ impl Format {
             Self::Msh => &["msh"],
             Self::Vtk => &["vtk"],
             Self::Vtu => &["vtu"],
+            Self::Vtp => &["vtp"],
+            Self::Tetgen => tetgen::ALL,
+            Self::Tetbin => &["tetbin"],
             Self::Medit => &["mesh"],
             Self::Mfem => &["mfem"],
             Self::Gltf => &["gltf"],
@@ -131,6 +149,9 @@ impl Format {
             Self::Msh => "Gmsh MSH 2.2 in text: tetrahedra, triangles, lines and points",
             Self::Vtk => "legacy VTK in text: tetrahedra, triangles, lines and vertices",
             Self::Vtu => "VTK unstructured grid, for ParaView: tetrahedra, triangles, lines and vertices",
+            Self::Vtp => "VTK poly data, for ParaView: triangles, lines and vertices",
+            Self::Tetgen => "TetGen .node, with .ele, .face, .edge beside it, numbered from 0",
+            Self::Tetbin => "tetrahedra in binary, in single precision",
             Self::Medit => "MEDIT .mesh in text: tetrahedra, triangles and edges",
             Self::Mfem => "MFEM mesh v1.0: simplices of one dimension up to 3",
             Self::Gltf => "glTF 2.0 for viewers: triangles, lines, points, the surface of tetrahedra",
@@ -144,10 +165,13 @@ impl Format {
     #[must_use]
     pub const fn loses(self) -> &'static str {
         match self {
-            Self::Off | Self::Obj | Self::Ply | Self::Vtk | Self::Medit | Self::Mfem | Self::Tops => "labels",
+            Self::Off | Self::Obj | Self::Ply | Self::Vtk | Self::Medit | Self::Mfem | Self::Tetgen | Self::Tops => {
+                "labels"
+            }
+            Self::Tetbin => "labels, precision beyond 32 bits",
             Self::Stl => "labels, precision beyond 32 bits, vertices that share a place",
             Self::Msh => "labels but integers from 1",
-            Self::Vtu => "labels but integers",
+            Self::Vtu | Self::Vtp => "labels but integers",
             Self::Gltf => "labels, precision beyond 32 bits, what lies inside of solids",
             Self::SimplexList => "coordinates",
             Self::Gudhi => "coordinates, labels but numbers",
@@ -161,11 +185,23 @@ impl Format {
         Self::ALL.iter().copied().find(|format| format.name() == name || format.extensions().contains(&&*name))
     }
 
+    /// The ends of the names of the files that a mesh in this format may have, if they are several: see
+    /// [`export_file`].
+    #[must_use]
+    pub const fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Tetgen => tetgen::ALL,
+            _ => &[],
+        }
+    }
+
     /// The greatest dimension of a simplex that the format holds.
     const fn max_dim(self) -> Dim {
         match self {
-            Self::Off | Self::Obj | Self::Ply | Self::Stl => 2,
-            Self::Msh | Self::Vtk | Self::Vtu | Self::Medit | Self::Mfem | Self::Gltf => 3,
+            Self::Off | Self::Obj | Self::Ply | Self::Stl | Self::Vtp => 2,
+            Self::Msh | Self::Vtk | Self::Vtu | Self::Medit | Self::Mfem | Self::Tetgen | Self::Tetbin | Self::Gltf => {
+                3
+            }
             Self::Tops | Self::SimplexList | Self::Gudhi => sig_core::MAX_DIM,
         }
     }
@@ -220,6 +256,12 @@ pub enum ExportError {
     /// The format has no chains.
     #[error("{format} holds no chains; use vtu or obj")]
     NoChains {
+        /// The format.
+        format: Format,
+    },
+    /// A mesh in the format is several files.
+    #[error("{format} is several files, and here is room for one alone")]
+    SeveralFiles {
         /// The format.
         format: Format,
     },
@@ -290,6 +332,7 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
     // Those of one dimension alone: STL of 2, MFEM of any.
     let alone = match format {
         Format::Stl => Some(2),
+        Format::Tetbin => Some(3),
         Format::Mfem => complex.dim(),
         _ => None,
     };
@@ -301,9 +344,11 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
         return Err(ExportError::Mixed { format, dim, other: top.dim });
     }
     let holds = match format {
-        Format::Obj => components == 3,
-        Format::Ply | Format::Medit => (2..=3).contains(&components),
-        Format::Stl | Format::Msh | Format::Vtk | Format::Vtu | Format::Mfem | Format::Gltf => components <= 3,
+        Format::Obj | Format::Tetbin => components == 3,
+        Format::Ply | Format::Medit | Format::Tetgen => (2..=3).contains(&components),
+        Format::Stl | Format::Msh | Format::Vtk | Format::Vtu | Format::Vtp | Format::Mfem | Format::Gltf => {
+            components <= 3
+        }
         Format::Off | Format::Tops | Format::SimplexList | Format::Gudhi => true,
     };
     if holds { Ok(()) } else { Err(ExportError::Coordinates { format, components }) }
@@ -318,6 +363,9 @@ pub fn check(complex: &impl Relations, format: Format) -> Result<(), ExportError
 /// [`ExportError`].
 pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> Result<Vec<Note>, ExportError> {
     check(complex, format)?;
+    if !format.files().is_empty() {
+        return Err(ExportError::SeveralFiles { format });
+    }
     let mut notes = Vec::new();
     if format == Format::SimplexList {
         simplex_list::write(complex, out)?;
@@ -342,15 +390,46 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
         Format::Mfem => mfem::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Gltf => gltf::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Tops => tops::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
-        Format::Vtu | Format::SimplexList | Format::Gudhi => {
+        Format::Vtp => vtp::write(&mesh, out).map(|()| mesh.integer_labels().is_some()),
+        Format::Tetbin => tetbin::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Vtu | Format::Tetgen | Format::SimplexList | Format::Gudhi => {
             vtu::write(&mesh, out).map(|()| mesh.integer_labels().is_some())
         }
     }?;
     notes.extend((!keeps_labels).then_some(Note::LabelsLeftOut));
-    let is_padded = matches!(format, Format::Stl | Format::Msh | Format::Vtk | Format::Vtu | Format::Gltf);
+    let is_padded =
+        matches!(format, Format::Stl | Format::Msh | Format::Vtk | Format::Vtu | Format::Vtp | Format::Gltf);
     notes.extend((is_padded && mesh.components() < 3).then_some(Note::CoordinatesPadded));
-    let is_single = matches!(format, Format::Stl | Format::Gltf);
+    let is_single = matches!(format, Format::Stl | Format::Tetbin | Format::Gltf);
     notes.extend((is_single && !mesh.is_single()).then_some(Note::CoordinatesRounded));
     notes.extend((format == Format::Gltf && complex.dim() == Some(3)).then_some(Note::InsideLeftOut));
     Ok(notes)
+}
+
+/// The ends of the names of the files that the complex takes in a format of [several](Format::files): those without which
+/// nothing is lost are not among them.
+///
+/// Cost: linear in the complex.
+pub fn files(complex: &impl Relations, format: Format) -> Vec<&'static str> {
+    if format.files().is_empty() { Vec::new() } else { tetgen::needed(&Mesh::new(complex)) }
+}
+
+/// Writes one of the [`files`] of a complex to `out`, which should be buffered, and returns what had to be left out of them
+/// all. Costs as [`export`].
+///
+/// # Errors
+/// [`ExportError`].
+pub fn export_file(
+    complex: &impl Relations,
+    format: Format,
+    file: &str,
+    out: &mut dyn Write,
+) -> Result<Vec<Note>, ExportError> {
+    if format.files().is_empty() {
+        return export(complex, format, out);
+    }
+    check(complex, format)?;
+    let mesh = Mesh::new(complex);
+    tetgen::write(&mesh, file, out)?;
+    Ok(if mesh.is_numbered_from(0) { Vec::new() } else { vec![Note::LabelsLeftOut] })
 }

@@ -63,6 +63,87 @@ fn obj_gives_the_same_bytes_but_for_its_own_numbers() {
     assert!(file(read(&text, "a.obj"), VertexOrder::Input) == numbered_from_one);
 }
 
+#[test]
+fn poly_data_gives_the_same_bytes() {
+    let original = file(read(SURFACE, "a.off"), VertexOrder::Input);
+    for format in [Format::Vtp, Format::Vtu] {
+        let (text, notes) = export_of(&original, format).unwrap();
+        assert!(notes.is_empty());
+        assert!(file(read(&text, "a"), VertexOrder::Input) == original, "{format}");
+    }
+    let solid = file(solid(), VertexOrder::Input);
+    assert!(matches!(export_of(&solid, Format::Vtp), Err(ExportError::Dimension { dim: 3, .. })));
+}
+
+/// Two tetrahedra of both orientations, a dangling triangle and edge, and an isolated vertex.
+fn solid() -> Soup {
+    let mut soup = Soup::new(Labels::Numbered(9), true);
+    for simplex in [&[0, 1, 2, 3][..], &[4, 1, 2, 3], &[5, 4, 1], &[7, 6]] {
+        soup.push(simplex);
+    }
+    let values = (0..27_u8).map(|value| f64::from(value * 5 % 7) / 3.0).collect();
+    soup.coordinates = Some(Coordinates { dim: 3, values: Scalars::F64(values) });
+    soup
+}
+
+/// Writes the files of a mesh in a directory, and reads it by the name of one of them.
+fn through_files(original: &[u8], ends: &[&str], read_by: &str) -> Soup {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |end: &str| directory.path().join("mesh").with_extension(end);
+    let any = AnyComplex::from_bytes(original).unwrap();
+    with_complex!(any, complex => {
+        assert_eq!(files(&complex, Format::Tetgen), ends);
+        for end in ends {
+            let mut out = std::fs::File::create(path(end)).unwrap();
+            assert!(export_file(&complex, Format::Tetgen, end, &mut out).unwrap().is_empty());
+        }
+    });
+    crate::io::read_path(path(read_by), &ReadOptions::default()).unwrap().0
+}
+
+#[test]
+fn files_of_tetgen_give_the_same_bytes() {
+    let original = file(solid(), VertexOrder::Input);
+    let ends = ["node", "ele", "face", "edge"];
+    assert!(file(through_files(&original, &ends, "node"), VertexOrder::Input) == original);
+    assert!(matches!(export_of(&original, Format::Tetgen), Err(ExportError::SeveralFiles { .. })));
+    let surface = file(read(SURFACE, "a.off"), VertexOrder::Input);
+    assert!(file(through_files(&surface, &["node", "face", "edge"], "node"), VertexOrder::Input) == surface);
+    let mut plane = read(SURFACE, "a.off");
+    plane.coordinates = Some(Coordinates { dim: 2, values: Scalars::F64((0..14).map(f64::from).collect()) });
+    let plane = file(plane, VertexOrder::Input);
+    assert!(file(through_files(&plane, &["node", "ele", "edge"], "node"), VertexOrder::Input) == plane);
+}
+
+#[test]
+fn tetrahedra_in_binary_give_the_same_bytes() {
+    let mut soup = solid();
+    let mixed = file(soup.clone(), VertexOrder::Input);
+    assert!(matches!(export_of(&mixed, Format::Tetbin), Err(ExportError::Mixed { dim: 3, .. })));
+    soup.simplices.iter_mut().take(3).for_each(Vec::clear);
+    let double = file(soup.clone(), VertexOrder::Input);
+    assert_eq!(export_of(&double, Format::Tetbin).unwrap().1, [Note::CoordinatesRounded]);
+    soup.coordinates = Some(Coordinates { dim: 3, values: Scalars::F32((0..27_u8).map(f32::from).collect()) });
+    let original = file(soup, VertexOrder::Input);
+    let (bytes, notes) = export_of(&original, Format::Tetbin).unwrap();
+    assert!(notes.is_empty());
+    assert!(file(read(&bytes, "a"), VertexOrder::Input) == original);
+}
+
+/// nOFF: any number of coordinates.
+#[test]
+fn points_in_five_dimensions() {
+    let mut soup = read(SURFACE, "a.off");
+    soup.coordinates =
+        Some(Coordinates { dim: 5, values: Scalars::F64((0..35).map(|x| f64::from(x) / 9.0).collect()) });
+    let original = file(soup, VertexOrder::Input);
+    for format in [Format::Off, Format::Tops] {
+        let (text, notes) = export_of(&original, format).unwrap();
+        assert!(notes.is_empty());
+        assert!(file(read(&text, &format!("a.{format}")), VertexOrder::Input) == original, "{format}");
+    }
+}
+
 /// The vertices go out in the order in which they came in, whatever their order in the file.
 #[test]
 fn the_order_in_the_file_does_not_show() {

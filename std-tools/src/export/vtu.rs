@@ -21,13 +21,7 @@ pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io
     writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
     writeln!(out, "<UnstructuredGrid>")?;
     writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{num_cells}">"#, mesh.num_vertices())?;
-    if let Some(labels) = mesh.integer_labels() {
-        writeln!(out, r#"<PointData Scalars="label">"#)?;
-        array(out, r#"type="UInt64" Name="label""#, mesh.num_vertices() * 8, |data| {
-            labels.into_iter().try_for_each(|label| data.write_all(&label.to_le_bytes()))
-        })?;
-        writeln!(out, "</PointData>")?;
-    }
+    labels(mesh, out)?;
     writeln!(out, r#"<CellData Scalars="dimension">"#)?;
     array(out, r#"type="UInt8" Name="dimension""#, num_cells, |data| {
         mesh.cells(0..=3, |cell| data.write_all(&[to_u8(cell.len() - 1)]))
@@ -51,8 +45,18 @@ pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io
     writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
 }
 
+/// The labels, if they are integers, as data at the points.
+pub(super) fn labels<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
+    let Some(labels) = mesh.integer_labels() else { return Ok(()) };
+    writeln!(out, r#"<PointData Scalars="label">"#)?;
+    array(out, r#"type="UInt64" Name="label""#, mesh.num_vertices() * 8, |data| {
+        labels.into_iter().try_for_each(|label| data.write_all(&label.to_le_bytes()))
+    })?;
+    writeln!(out, "</PointData>")
+}
+
 /// The points, filled up to three coordinates, in their own precision.
-fn points<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn points<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
     let (name, bytes) = if mesh.is_single() { ("Float32", 4) } else { ("Float64", 8) };
     let attributes = format!(r#"type="{name}" NumberOfComponents="3""#);
     array(out, &attributes, mesh.num_vertices() * 3 * bytes, |data| {
