@@ -126,9 +126,17 @@ impl<'s, 'a> Bytes<'s, 'a> {
         Ok(bytes.iter().rev().fold(0, |number, &byte| number << 8 | u64::from(byte)))
     }
 
-    /// Reads an array of numbers of the given type into `values`.
-    pub(super) fn array(&mut self, layout: Layout, scalar: Type, values: &mut Values) -> Result<(), Fault> {
-        let mut numbers = Numbers { scalar, big_endian: layout.big_endian, left: Vec::new(), values };
+    /// Reads an array of numbers of the given type into `values`, which are to have `most` at most: a fault not far beyond
+    /// that.
+    pub(super) fn array(
+        &mut self,
+        layout: Layout,
+        scalar: Type,
+        most: Option<u64>,
+        values: &mut Values,
+    ) -> Result<(), Fault> {
+        let most = most.unwrap_or(u64::MAX);
+        let mut numbers = Numbers { scalar, big_endian: layout.big_endian, left: Vec::new(), most, values };
         if !layout.zlib {
             let mut length = self.length(layout)?;
             let mut piece = vec![0; PIECE];
@@ -187,11 +195,16 @@ struct Numbers<'v> {
     big_endian: bool,
     /// The start of a number whose end has not come.
     left: Vec<u8>,
+    most: u64,
     values: &'v mut Values,
 }
 
 impl Numbers<'_> {
     fn push(&mut self, mut bytes: &[u8], position: Position) -> Result<(), Fault> {
+        if self.values.len() as u64 > self.most {
+            let message = format!("the array goes on after the {} numbers that the piece says it has", self.most);
+            return Err(Fault::new(position, ErrorKind::Rule(message.into())));
+        }
         let size = self.scalar.size();
         while !self.left.is_empty() && !bytes.is_empty() {
             self.left.push(bytes[0]);

@@ -179,18 +179,21 @@ impl Grid {
         let Some(scalar) = tag.get("type").and_then(scalar_type) else {
             return Err(tag.unsupported("an array that is not of type Int8 to UInt64, Float32 or Float64"));
         };
-        let mut values = piece.values(role, scalar);
+        let (mut values, most) = (piece.values(role, scalar), piece.expected(role));
         match tag.get("format").unwrap_or("ascii") {
             "ascii" if tag.empty => {}
             "ascii" => {
                 let mut words = Words::before(source, b'<');
-                while let Some(line) = words.next()? {
+                while let Some(mut line) = words.next()? {
+                    if most == Some(values.len() as u64) {
+                        return Err(line.trailing("array, which has as many numbers as the piece says,"));
+                    }
                     values.push_text(&line)?;
                 }
             }
             "binary" => {
                 source.skip_blanks()?;
-                Bytes::base64(source).array(self.layout, scalar, &mut values)?;
+                Bytes::base64(source).array(self.layout, scalar, most, &mut values)?;
             }
             "appended" => {
                 let (piece_number, array) = (self.pieces.len() - 1, self.pieces.last().map_or(0, |p| p.arrays.len()));
@@ -225,8 +228,10 @@ impl Grid {
                 return Err(tag.unsupported("appended arrays that overlap"));
             };
             bytes.skip(gap)?;
-            if let Some(array) = self.pieces.get_mut(piece).and_then(|piece| piece.arrays.get_mut(array)) {
-                bytes.array(self.layout, scalar, &mut array.values)?;
+            let Some(piece) = self.pieces.get_mut(piece) else { continue };
+            let most = piece.arrays.get(array).and_then(|array| piece.expected(array.role));
+            if let Some(array) = piece.arrays.get_mut(array) {
+                bytes.array(self.layout, scalar, most, &mut array.values)?;
             }
         }
         Ok(())
