@@ -10,7 +10,6 @@ mod msh;
 mod obj;
 mod off;
 mod ply;
-mod shared_data;
 mod simplex_list;
 mod stl;
 mod text;
