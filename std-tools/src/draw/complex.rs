@@ -10,6 +10,9 @@ use crate::singularities::Singularities;
 /// Dots and lines are drawn for all vertices and edges of complexes of few.
 const FEW: usize = 200;
 
+/// Edges of simplices of dimension 4 or more are drawn up to so many: their triangles hide one another.
+const SOME: usize = 2000;
+
 /// The coordinates of the vertices, filled up to three; of more than three the first ones. `None` if there are none, or one
 /// is not finite.
 #[must_use]
@@ -49,7 +52,7 @@ impl Highlight {
 ///
 /// Drawn are the triangles of tetrahedra with one tetrahedron, the triangles and edges and vertices that are top simplices, and
 /// the simplices of `singularities` and of `highlights`, which shine through what hides them; beside highlights the rest is
-/// pale. Of a complex of dimension 4 or more all triangles are drawn.
+/// pale. Of simplices of dimension 4 or more all triangles are drawn, and the edges, if there are not many, shine through them.
 ///
 /// Cost: one pass over the triangles, edges and vertices.
 #[must_use]
@@ -137,6 +140,8 @@ impl<I: Index> Build<'_, '_, I> {
             let (top, _) = self.top(edge, 1);
             if top == 1 {
                 self.line(edge, self.colour(1), radius, false);
+            } else if top > 3 && count <= SOME && !self.is_pale {
+                self.line(edge, INK, if count <= FEW { 1.0 } else { 0.6 }, true);
             } else if count <= FEW && (self.scene.flat || top > 3) {
                 self.line(edge, if self.is_pale { PALE } else { INK }, 1.0, false);
             }
@@ -151,7 +156,8 @@ impl<I: Index> Build<'_, '_, I> {
             if complex.is_top(vertex) {
                 self.dot(vertex, self.colour(0), isolated, false);
             } else if is_drawn {
-                self.dot(vertex, if self.is_pale { PALE } else { INK }, 3.0, false);
+                let is_inside = !self.is_pale && self.top(vertex, 0).0 > 3;
+                self.dot(vertex, if self.is_pale { PALE } else { INK }, 3.0, is_inside);
             }
         }
     }
@@ -177,9 +183,12 @@ impl<I: Index> Build<'_, '_, I> {
 
     fn singular(&mut self, singularities: &Singularities) {
         let [vertices, edges, triangles] = &singularities.by_dim;
+        // Where most edges are marked there would be nothing else to see.
+        let is_crowded = edges.len() > SOME && 2 * edges.len() > self.complex.num_simplices_of_dim(1);
+        let is_drawn = !self.is_pale && !is_crowded;
         // Many marks are small, or they would hide what they mark.
         let radius = |count: usize, least: f64, most: f64| (30.0 / (count as f64).sqrt()).clamp(least, most);
-        if !self.is_pale {
+        if is_drawn {
             edges.iter().for_each(|&edge| self.line(edge, SINGULAR, radius(edges.len(), 1.2, 2.4), true));
             vertices.iter().for_each(|&vertex| self.dot(vertex, SINGULAR, radius(vertices.len(), 2.0, 5.0), true));
         }
@@ -188,7 +197,7 @@ impl<I: Index> Build<'_, '_, I> {
             if !found.is_empty() {
                 let name = if found.len() == 1 { one } else { many };
                 let text = format!("{} non-manifold {name}", grouped(found.len()));
-                let (swatch, colour) = if self.is_pale { (Swatch::None, INK) } else { (swatch, SINGULAR) };
+                let (swatch, colour) = if is_drawn { (swatch, SINGULAR) } else { (Swatch::None, INK) };
                 self.scene.legend.push(swatch, colour, text);
             }
         }
