@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use sig_core::{Dim, Relations, SimplexId, VertexId};
 
-use super::colour::{SERIES, of_number};
+use super::colour::{SERIES, lit, of_number};
 use super::complex::Highlight;
 use crate::build::narrow;
 use crate::names::vertex_label;
@@ -80,7 +80,11 @@ pub fn read_generators(text: &[u8], complex: &impl Relations) -> Result<Vec<High
             };
             let name = format!("H{dim}: cycle{}, {count} {}", order.unwrap_or_default(), many(what, count));
             let place = highlights.len();
-            let colour = SERIES.get(place).copied().unwrap_or_else(|| of_number(Some(narrow(place))));
+            let colour = match (place / SERIES.len(), SERIES[place % SERIES.len()]) {
+                (0, colour) => colour,
+                (1, colour) => lit(colour, 0.55),
+                _ => of_number(Some(narrow(place))),
+            };
             highlights.push(Highlight { name, simplices, colour });
         }
     }
