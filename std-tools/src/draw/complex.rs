@@ -50,9 +50,10 @@ impl Highlight {
 
 /// The scene of a valid complex whose vertices lie at `points`.
 ///
-/// Drawn are the triangles of tetrahedra with one tetrahedron, the triangles and edges and vertices that are top simplices, and
-/// the simplices of `singularities` and of `highlights`, which shine through what hides them; beside highlights the rest is
-/// pale. Of simplices of dimension 4 or more all triangles are drawn, and the edges, if there are not many, shine through them.
+/// Drawn are the triangles of tetrahedra that do not lie between two (all, if all do), the triangles and edges and vertices
+/// that are top simplices, and the simplices of `singularities` and of `highlights`, which shine through what hides them;
+/// beside highlights the rest is pale. Of simplices of dimension 4 or more all triangles are drawn, and the edges, if there
+/// are not many, shine through them.
 ///
 /// Cost: one pass over the triangles, edges and vertices.
 #[must_use]
@@ -125,8 +126,14 @@ impl<I: Index> Build<'_, '_, I> {
         for triangle in self.complex.simplices_of_dim(2) {
             let (top, around) = self.top(triangle, 2);
             // Between two tetrahedra nobody looks.
-            if !is_solid || around <= 1 {
+            if !is_solid || around != 2 {
                 self.face(triangle, self.colour(top), false);
+            }
+        }
+        if is_solid && self.scene.faces.is_empty() {
+            // A closed manifold, which has no outside.
+            for triangle in self.complex.simplices_of_dim(2) {
+                self.face(triangle, self.colour(3), false);
             }
         }
     }
