@@ -1,15 +1,17 @@
-//! How fast meshes in text are read, on one core, beside meshio if Python has it.
+//! How fast meshes in text are read, on one core, beside a crate for the format, and meshio if Python has it.
 //!
 //! ```text
-//! cargo bench --bench read                      a grid of triangles with a height, in five formats
+//! cargo bench --bench read                      a grid of triangles with a height, in each format
 //! cargo bench --bench read -- bunny.off a.vtu   files
 //! ```
 //!
-//! Megabytes are those of the text, 10⁶ bytes. Files are read from the page cache.
+//! Megabytes are those of the text, 10⁶ bytes. Files are read from the page cache. What the peers read: `tobj`, `ply-rs-bw`,
+//! `stl_io` and `vtkio` (legacy and XML) take files, `mshio` bytes, of MSH 4.1 alone; the table says which refused.
 
 use std::error::Error;
 use std::fmt::Write;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -25,7 +27,8 @@ const SIDE: usize = 600;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = common::arguments();
-    println!("medians of {ROUNDS} rounds (least, most), MB/s");
+    println!("medians of {ROUNDS} rounds (least, most), MB/s\n");
+    println!("| file | MB | sig | crate | meshio |\n|---|---|---|---|---|");
     if !arguments.is_empty() {
         return arguments.iter().try_for_each(|file| measure(Path::new(file)));
     }
@@ -105,27 +108,95 @@ fn written(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
         ),
     ];
     let mut files = Vec::new();
-    for (name, text) in texts {
+    for (name, text) in texts.into_iter().chain(more_texts(&points, &triangles)) {
         files.push(folder.join(name));
         fs::write(folder.join(name), text)?;
     }
     Ok(files)
 }
 
-/// One file, by this project and by meshio in turn.
+/// The grid in formats whose rows are not just numbers.
+fn more_texts(points: &[[f64; 3]], triangles: &[[usize; 3]]) -> [(&'static str, String); 4] {
+    let (n, t) = (points.len(), triangles.len());
+    let mut ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {n}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {t}\nproperty list uchar int vertex_indices\nend_header\n"
+    );
+    let mut nodes = String::new();
+    let (mut msh2, mut msh4) = (String::new(), String::new());
+    for (number, [x, y, z]) in points.iter().enumerate() {
+        let _ = writeln!(ply, "{x:.6} {y:.6} {z:.6}");
+        let _ = writeln!(msh2, "{} {x:.6} {y:.6} {z:.6}", number + 1);
+        let _ = writeln!(msh4, "{}", number + 1);
+        let _ = writeln!(nodes, "{x:.6} {y:.6} {z:.6}");
+    }
+    let _ = write!(msh2, "$EndNodes\n$Elements\n{t}\n");
+    let _ = write!(msh4, "{nodes}$EndNodes\n$Elements\n1 {t} 1 {t}\n2 1 2 {t}\n");
+    let mut stl = "solid grid\n".to_owned();
+    for (number, [a, b, c]) in triangles.iter().enumerate() {
+        let _ = writeln!(ply, "3 {a} {b} {c}");
+        let _ = writeln!(msh2, "{} 2 2 0 1 {} {} {}", number + 1, a + 1, b + 1, c + 1);
+        let _ = writeln!(msh4, "{} {} {} {}", number + 1, a + 1, b + 1, c + 1);
+        let _ = write!(stl, "facet normal 0 0 1\n outer loop\n");
+        for [x, y, z] in [a, b, c].map(|&corner| points[corner]) {
+            let _ = writeln!(stl, "  vertex {x:.6} {y:.6} {z:.6}");
+        }
+        let _ = write!(stl, " endloop\nendfacet\n");
+    }
+    let _ = writeln!(stl, "endsolid grid");
+    let head = |version| format!("$MeshFormat\n{version} 0 8\n$EndMeshFormat\n");
+    let msh2 = format!("{}$Nodes\n{n}\n{msh2}$EndElements\n", head("2.2"));
+    let entities = "$Entities\n0 0 1 0\n1 0 0 -1 8 20 1 0 0\n$EndEntities\n";
+    let msh4 = format!("{}{entities}$Nodes\n1 {n} 1 {n}\n2 1 0 {n}\n{msh4}$EndElements\n", head("4.1"));
+    [("a.ply", ply), ("a.stl", stl), ("a2.msh", msh2), ("a4.msh", msh4)]
+}
+
+/// One file, by this project, by the crate for its format, and by meshio in turn.
 fn measure(file: &Path) -> Result<(), Box<dyn Error>> {
     #[expect(clippy::cast_precision_loss, reason = "files are small")]
     let megabytes = fs::metadata(file)?.len() as f64 / 1e6;
-    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    let (mut ours, mut crates, mut meshios) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
         let (seconds, read) = timed(|| read_path(file, &ReadOptions { drop_degenerate: true, ..Default::default() }));
         read?;
         ours.push(megabytes / seconds);
-        theirs.extend(meshio(file).map(|seconds| megabytes / seconds));
+        let (seconds, read) = timed(|| by_crate(file));
+        crates.extend(read.is_some().then_some(megabytes / seconds));
+        meshios.extend(meshio(file).map(|seconds| megabytes / seconds));
     }
-    let peer = if theirs.is_empty() { "not there".to_owned() } else { Timing::of(theirs).show(1.0, "") };
-    println!("{}: {megabytes:.1} MB, {}, meshio {peer}", file.display(), Timing::of(ours).show(1.0, ""));
+    let show = |rates: Vec<f64>| if rates.is_empty() { "–".to_owned() } else { Timing::of(rates).show(1.0, "") };
+    let name = file.file_name().unwrap_or_default().display();
+    println!("| {name} | {megabytes:.1} | {} | {} | {} |", show(ours), show(crates), show(meshios));
     Ok(())
+}
+
+/// Reads a file by the crate for its format; the number of its vertices or more, if there is such a crate and it reads the
+/// file.
+fn by_crate(file: &Path) -> Option<usize> {
+    match file.extension()?.to_str()? {
+        "obj" => {
+            let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).ok()?;
+            Some(models.iter().map(|model| model.mesh.positions.len()).sum())
+        }
+        "ply" => {
+            let parser = ply_rs_bw::parser::Parser::<ply_rs_bw::ply::DefaultElement>::new();
+            let ply = parser.read_ply(&mut BufReader::new(File::open(file).ok()?)).ok()?;
+            ply.payload.get("vertex").map(Vec::len)
+        }
+        "stl" => stl_io::read_stl(&mut BufReader::new(File::open(file).ok()?)).ok().map(|mesh| mesh.vertices.len()),
+        "vtk" | "vtu" | "vtp" => {
+            let vtk = vtkio::Vtk::import(file).ok()?;
+            // Pieces of XML are loaded when they are asked for.
+            let vtkio::model::DataSet::UnstructuredGrid { pieces, .. } = vtk.data else { return None };
+            pieces.into_iter().map(|piece| Some(piece.into_loaded_piece_data(None).ok()?.num_points())).sum()
+        }
+        "msh" => {
+            let bytes = fs::read(file).ok()?;
+            let msh = mshio::parse_msh_bytes(&bytes).ok()?;
+            usize::try_from(msh.data.nodes.map_or(0, |nodes| nodes.num_nodes)).ok()
+        }
+        _ => None,
+    }
 }
 
 /// The seconds that meshio takes, if it is there and reads the file.
