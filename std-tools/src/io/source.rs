@@ -5,10 +5,11 @@
 
 use std::borrow::Cow;
 use std::io::{self, Read};
+use std::ops::Range;
 
 use super::compression::Compression;
 use super::error::{ErrorKind, Excerpt, Fault, Position, excerpt};
-use super::text::{Line, Origin};
+use super::text::{Decimal, Line, Origin};
 
 /// Bytes asked from the reader at a time; also the most that detection may look at.
 const CHUNK: usize = 256 * 1024;
@@ -311,10 +312,17 @@ impl<'a> Source<'a> {
 
     /// What places in text that begins with the next byte are counted from.
     fn origin(&self) -> Origin {
+        self.origin_at(self.start)
+    }
+
+    /// The same of text on the line at hand that begins at this byte of the buffer.
+    fn origin_at(&self, start: usize) -> Origin {
+        let offset = self.base + start as u64;
         if self.binary {
-            return Origin::Byte(self.offset());
+            Origin::Byte(offset)
+        } else {
+            Origin::Text { line: self.lines + 1, column: offset - self.line_begin }
         }
-        Origin::Text { line: self.lines + 1, column: self.offset() - self.line_begin }
     }
 
     /// Passes over blanks and line ends up to the next byte of another kind, which is told; `None` at the end.
@@ -346,16 +354,33 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// What `convert` makes of the next word, if that is a plain decimal and becomes something; it is passed over then, and
+    /// blanks before it in any case.
+    #[inline]
+    pub(super) fn plain<T>(&mut self, convert: impl FnOnce(Decimal) -> Option<T>) -> Result<Option<T>, Fault> {
+        self.skip_blanks()?;
+        let Some((decimal, length)) = Decimal::first(&self.buffer[self.start..self.end], false) else {
+            return Ok(None);
+        };
+        let converted = convert(decimal);
+        if converted.is_some() {
+            self.start += length;
+        }
+        Ok(converted)
+    }
+
     /// The next word, on whatever line it stands, as a line of its own. Words end before `stop`, at which there is none;
     /// comments, which `comment` begins, are passed over.
     pub(super) fn next_word(&mut self, comment: Option<u8>, stop: Option<u8>) -> Result<Option<Line<'_>>, Fault> {
-        loop {
-            match self.skip_blanks()? {
-                None => return Ok(None),
-                first if first == comment => self.skip_line()?,
-                first if first == stop => return Ok(None),
-                Some(_) => break,
-            }
+        let Some(word) = self.pass_word(comment, stop)? else { return Ok(None) };
+        let origin = self.origin_at(word.start);
+        Ok(Some(Line::new(&self.buffer[word], origin)))
+    }
+
+    /// Passes over the next word; where it is in the buffer.
+    fn pass_word(&mut self, comment: Option<u8>, stop: Option<u8>) -> Result<Option<Range<usize>>, Fault> {
+        if !self.has_word(comment, stop)? {
+            return Ok(None);
         }
         let mut length = 1;
         loop {
@@ -371,9 +396,9 @@ impl<'a> Source<'a> {
             }
             self.refill()?;
         }
-        let (word, origin) = (self.start..self.start + length, self.origin());
+        let word = self.start..self.start + length;
         self.start = word.end;
-        Ok(Some(Line::new(&self.buffer[word], origin)))
+        Ok(Some(word))
     }
 
     /// Like [`Self::next_word`], a fault if there is none.
@@ -383,18 +408,17 @@ impl<'a> Source<'a> {
         stop: Option<u8>,
         expected: &'static str,
     ) -> Result<Line<'_>, Fault> {
-        // The two borrows of a word that is there, and of the place where none is, must not meet.
-        if !self.has_word(comment, stop)? {
-            return Err(match self.skip_blanks()? {
-                None => truncated(self.end_of_text(), expected),
-                Some(_) => {
-                    let found = excerpt(self.peek(1)?);
-                    Fault::new(self.end_of_text(), ErrorKind::Expected { expected: expected.into(), found })
-                }
-            });
+        if let Some(word) = self.pass_word(comment, stop)? {
+            let origin = self.origin_at(word.start);
+            return Ok(Line::new(&self.buffer[word], origin));
         }
-        let end = self.end_of_text();
-        self.next_word(comment, stop)?.ok_or_else(|| truncated(end, expected))
+        Err(match self.skip_blanks()? {
+            None => truncated(self.end_of_text(), expected),
+            Some(_) => {
+                let found = excerpt(self.peek(1)?);
+                Fault::new(self.end_of_text(), ErrorKind::Expected { expected: expected.into(), found })
+            }
+        })
     }
 
     /// Whether a word comes before `stop`; blanks and comments before it are passed over.

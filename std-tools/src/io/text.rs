@@ -110,8 +110,20 @@ impl<'a> Line<'a> {
 
     /// The next word as an integer that fits `T`.
     pub(super) fn integer<T: TryFrom<i64>>(&mut self, expected: &'static str) -> Result<T, Fault> {
+        if let Some(number) = self.plain(|decimal| T::try_from(decimal.integer()?).ok()) {
+            return Ok(number);
+        }
         let word = self.need_word(expected)?;
         self.parse_integer(word, expected)
+    }
+
+    /// What `convert` makes of the next word, if that is a plain decimal and becomes something; it is passed over then.
+    fn plain<T>(&mut self, convert: impl FnOnce(Decimal) -> Option<T>) -> Option<T> {
+        self.skip_blanks();
+        let (decimal, length) = Decimal::first(self.rest(), true)?;
+        let converted = convert(decimal)?;
+        self.at += length;
+        Some(converted)
     }
 
     /// A word of this line as an integer that fits `T`.
@@ -123,6 +135,9 @@ impl<'a> Line<'a> {
 
     /// The next word as a finite number.
     pub(super) fn float<T: Float>(&mut self, expected: &'static str) -> Result<T, Fault> {
+        if let Some(number) = self.plain(Decimal::float) {
+            return Ok(number);
+        }
         let word = self.need_word(expected)?;
         self.parse_finite(word, expected)
     }
@@ -183,8 +198,8 @@ impl<'a> Line<'a> {
 pub(super) trait Float: Copy + FromStr {
     fn finite(self) -> bool;
     fn negated(self) -> Self;
-    /// `mantissa · 10^exponent` if that takes a single rounding.
-    fn exact(mantissa: u64, exponent: i32) -> Option<Self>;
+    /// `digits / 10^places` if that takes a single rounding.
+    fn exact(digits: u64, places: u32) -> Option<Self>;
 }
 
 impl Float for f64 {
@@ -196,18 +211,16 @@ impl Float for f64 {
         self.is_finite()
     }
 
-    fn exact(mantissa: u64, exponent: i32) -> Option<Self> {
+    fn exact(digits: u64, places: u32) -> Option<Self> {
         // Both operands are exact, so the one operation rounds correctly (Clinger 1990).
         const POWERS: [f64; 23] = [
             1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
             1e19, 1e20, 1e21, 1e22,
         ];
-        if mantissa > 1 << 53 {
+        if digits > 1 << 53 {
             return None;
         }
-        let power = POWERS.get(exponent.unsigned_abs() as usize)?;
-        let value = mantissa as Self;
-        Some(if exponent < 0 { value / power } else { value * power })
+        Some(digits as Self / POWERS.get(places as usize)?)
     }
 }
 
@@ -220,14 +233,12 @@ impl Float for f32 {
         self.is_finite()
     }
 
-    fn exact(mantissa: u64, exponent: i32) -> Option<Self> {
+    fn exact(digits: u64, places: u32) -> Option<Self> {
         const POWERS: [f32; 11] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
-        if mantissa > 1 << 24 {
+        if digits > 1 << 24 {
             return None;
         }
-        let power = POWERS.get(exponent.unsigned_abs() as usize)?;
-        let value = mantissa as Self;
-        Some(if exponent < 0 { value / power } else { value * power })
+        Some(digits as Self / POWERS.get(places as usize)?)
     }
 }
 
@@ -240,7 +251,7 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     if digits.is_empty() {
         return None;
     }
-    let mut value = 0i64;
+    let mut value = 0_i64;
     for &byte in digits {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
@@ -255,35 +266,77 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
 ///
 /// Short plain decimals, which meshes are made of, take a fast path of one multiplication or division.
 pub(super) fn parse_float<T: Float>(word: &[u8]) -> Option<T> {
-    if let Some((negative, mantissa, exponent)) = short_decimal(word)
-        && !(negative && mantissa == 0)
-        && let Some(value) = T::exact(mantissa, exponent)
+    if let Some((decimal, length)) = Decimal::first(word, true)
+        && length == word.len()
+        && let Some(value) = decimal.float()
     {
-        return if negative { Some(value.negated()) } else { Some(value) };
+        return Some(value);
     }
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// `±digits[.digits]` of at most 19 digits, as sign, digits and a power of ten.
-fn short_decimal(word: &[u8]) -> Option<(bool, u64, i32)> {
-    let (negative, digits) = match word {
-        [b'-', digits @ ..] => (true, digits),
-        digits => (false, digits),
-    };
-    if digits.len() > 19 {
-        return None;
-    }
-    let (mut mantissa, mut exponent, mut seen_point) = (0u64, 0, false);
-    for &byte in digits {
-        let digit = byte.wrapping_sub(b'0');
-        if digit <= 9 {
-            mantissa = 10 * mantissa + u64::from(digit);
-            exponent -= i32::from(seen_point);
-        } else if byte == b'.' && !seen_point {
-            seen_point = true;
-        } else {
+/// A plain decimal, `digits[.digits]` of at most 18 digits, with or without a minus before it: what meshes are made of. It
+/// is read in the same pass that finds its end.
+#[derive(Clone, Copy)]
+pub(super) struct Decimal {
+    is_negative: bool,
+    digits: u64,
+    /// The digits after the point, if there is a point.
+    after_point: Option<u32>,
+}
+
+impl Decimal {
+    /// The decimal that is the first word of `bytes`, and its length; none if that is something else, or goes to the end
+    /// and may go on.
+    #[inline]
+    pub(super) fn first(bytes: &[u8], is_all: bool) -> Option<(Self, usize)> {
+        const MOST: usize = 18;
+        let is_negative = bytes.first() == Some(&b'-');
+        let start = usize::from(is_negative);
+        let (mut digits, mut length, mut point) = (0_u64, start, None);
+        loop {
+            let Some(&byte) = bytes.get(length) else {
+                if is_all {
+                    break;
+                }
+                return None;
+            };
+            let digit = byte.wrapping_sub(b'0');
+            if digit <= 9 {
+                // Of too many digits nothing is made.
+                digits = digits.wrapping_mul(10).wrapping_add(u64::from(digit));
+            } else if byte == b'.' && point.is_none() {
+                point = Some(length);
+            } else if is_blank(byte) {
+                break;
+            } else {
+                return None;
+            }
+            length += 1;
+        }
+        let count = length - start - usize::from(point.is_some());
+        if count == 0 || count > MOST {
             return None;
         }
+        let after_point = point.map(|point| crate::build::narrow(length - point - 1));
+        Some((Self { is_negative, digits, after_point }, length))
     }
-    (digits.len() > usize::from(seen_point)).then_some((negative, mantissa, exponent))
+
+    /// The number, if it has no point.
+    #[inline]
+    pub(super) fn integer(self) -> Option<i64> {
+        // Below 10^18.
+        let number = i64::try_from(self.digits).ok()?;
+        self.after_point.is_none().then_some(if self.is_negative { -number } else { number })
+    }
+
+    /// The number, if that takes a single rounding, and is not −0.
+    #[inline]
+    pub(super) fn float<T: Float>(self) -> Option<T> {
+        if self.is_negative && self.digits == 0 {
+            return None;
+        }
+        let value = T::exact(self.digits, self.after_point.unwrap_or(0))?;
+        Some(if self.is_negative { value.negated() } else { value })
+    }
 }

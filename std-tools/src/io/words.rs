@@ -2,7 +2,7 @@
 
 use super::error::{ErrorKind, Fault};
 use super::source::Source;
-use super::text::{Float, Line};
+use super::text::{Decimal, Float, Line};
 
 /// The words of an input, with its rules of what ends them.
 pub(super) struct Words<'s, 'a> {
@@ -41,12 +41,18 @@ impl<'s, 'a> Words<'s, 'a> {
 
     /// The next word as an integer.
     pub(super) fn integer<T: TryFrom<i64>>(&mut self, expected: &'static str) -> Result<T, Fault> {
+        if let Some(number) = self.source.plain(|decimal| T::try_from(decimal.integer()?).ok())? {
+            return Ok(number);
+        }
         let line = self.need(expected)?;
         line.parse_integer(line.as_word(), expected)
     }
 
     /// The next word as a finite number.
     pub(super) fn float<T: Float>(&mut self, expected: &'static str) -> Result<T, Fault> {
+        if let Some(number) = self.source.plain(Decimal::float)? {
+            return Ok(number);
+        }
         let line = self.need(expected)?;
         line.parse_finite(line.as_word(), expected)
     }
@@ -54,6 +60,10 @@ impl<'s, 'a> Words<'s, 'a> {
     /// The next word as the number of a vertex, of which there are `vertices`, numbered from `first`; from 0 in what is
     /// returned.
     pub(super) fn vertex(&mut self, first: u8, vertices: u32, expected: &'static str) -> Result<u32, Fault> {
+        let in_range = |index: i64| u32::try_from(index - i64::from(first)).ok().filter(|&vertex| vertex < vertices);
+        if let Some(vertex) = self.source.plain(|decimal| in_range(decimal.integer()?))? {
+            return Ok(vertex);
+        }
         let line = self.need(expected)?;
         let index: i64 = line.parse_integer(line.as_word(), expected)?;
         match u32::try_from(index.saturating_sub(first.into())) {

@@ -1,6 +1,6 @@
 //! Numbers in text against the standard library's parser, which is the oracle.
 
-use super::super::text::{parse_float, parse_integer};
+use super::super::text::{Decimal, parse_float, parse_integer};
 use super::Random;
 
 /// A string that is a number, or nearly one.
@@ -52,4 +52,31 @@ fn integers_are_those_of_the_standard_library() {
     for word in words.chain(special) {
         assert_eq!(parse_integer(word.as_bytes()), word.parse().ok(), "{word}");
     }
+}
+
+/// What is read of the start of a text is what stands there as a word.
+#[test]
+fn plain_decimals_are_words() {
+    let mut random = Random(3);
+    let (mut numbers, mut integers) = (0, 0);
+    for _ in 0..200_000 {
+        let word = word(&mut random);
+        let text = format!("{word}{}7", [" ", "\n", "\t", "\r"][random.below(4)]);
+        for (bytes, is_all) in [(text.as_bytes(), false), (word.as_bytes(), true)] {
+            let Some((decimal, length)) = Decimal::first(bytes, is_all) else { continue };
+            assert_eq!(length, word.len(), "{word}");
+            if let Some(number) = decimal.float::<f64>() {
+                assert_eq!(number.to_bits(), word.parse::<f64>().unwrap().to_bits(), "{word}");
+                numbers += 1;
+            }
+            if let Some(number) = decimal.float::<f32>() {
+                assert_eq!(number.to_bits(), word.parse::<f32>().unwrap().to_bits(), "{word}");
+            }
+            assert_eq!(decimal.integer(), word.parse().ok(), "{word}");
+            integers += usize::from(decimal.integer().is_some());
+        }
+        // It may go on.
+        assert!(Decimal::first(word.as_bytes(), false).is_none());
+    }
+    assert!(numbers > 100_000 && integers > 20_000, "{numbers} numbers, {integers} integers");
 }

@@ -63,7 +63,9 @@ impl File {
         }
         let mut words = Words::new(source, None);
         for _ in 0..count {
-            values.push_text(&words.need(expected)?)?;
+            if !values.push_plain(words.source)? {
+                values.push_text(&words.need(expected)?)?;
+            }
         }
         Ok(())
     }

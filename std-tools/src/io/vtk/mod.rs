@@ -14,7 +14,8 @@ pub(super) use xml::read as read_xml;
 
 use super::error::{ErrorKind, Fault, Position};
 use super::intake::Intake;
-use super::text::Line;
+use super::source::Source;
+use super::text::{Decimal, Line};
 use crate::soup::Scalars;
 
 /// Whether a file that begins so says that it is in the legacy format.
@@ -158,6 +159,28 @@ impl Values {
             _ => return Err(self.refusal(number)),
         }
         Ok(())
+    }
+
+    /// Adds the next word if it is a plain decimal that is possible here; whether it was.
+    fn push_plain(&mut self, source: &mut Source<'_>) -> Result<bool, Fault> {
+        fn push<T>(values: &mut Vec<T>, value: Option<T>) -> bool {
+            let Some(value) = value else { return false };
+            values.push(value);
+            true
+        }
+        Ok(match self {
+            Self::Points(Scalars::F32(values)) => push(values, source.plain(Decimal::float)?),
+            Self::Points(Scalars::F64(values)) => push(values, source.plain(Decimal::float)?),
+            Self::Vertices(values, vertices) => {
+                let vertices = *vertices;
+                let vertex = |number: i64| u32::try_from(number).ok().filter(|&vertex| vertex < vertices);
+                push(values, source.plain(|decimal| vertex(decimal.integer()?))?)
+            }
+            Self::Ends(values) | Self::Labels(values) => {
+                push(values, source.plain(|decimal| decimal.integer()?.try_into().ok())?)
+            }
+            Self::Types(values) => push(values, source.plain(|decimal| decimal.integer()?.try_into().ok())?),
+        })
     }
 
     /// Adds a number in text, which is all of the line.

@@ -184,8 +184,13 @@ impl Grid {
             "ascii" if tag.empty => {}
             "ascii" => {
                 let mut words = Words::before(source, b'<');
-                while let Some(mut line) = words.next()? {
-                    if most == Some(values.len() as u64) {
+                loop {
+                    let is_full = most == Some(values.len() as u64);
+                    if !is_full && values.push_plain(words.source)? {
+                        continue;
+                    }
+                    let Some(mut line) = words.next()? else { break };
+                    if is_full {
                         return Err(line.trailing("array, which has as many numbers as the piece says,"));
                     }
                     values.push_text(&line)?;
