@@ -37,6 +37,11 @@ impl Order {
         self.inputs[id as usize]
     }
 
+    /// The vertex number of each id.
+    pub(crate) fn inputs(&self) -> &[u32] {
+        &self.inputs
+    }
+
     /// The labels and coordinates of the vertices of the complex, by id.
     pub(crate) fn permute(&self, labels: Labels, coordinates: Option<Coordinates>) -> (Labels, Option<Coordinates>) {
         if self.inputs.len() == labels.len() && self.inputs.iter().zip(0..).all(|(&input, id)| input == id) {

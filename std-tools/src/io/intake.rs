@@ -2,11 +2,13 @@
 
 use sig_core::{Dim, MAX_DIM};
 
+use super::attributes::{Attributes, References};
 use super::cone::{self, Polyhedron};
 use super::error::ErrorKind;
 use super::report::ReadReport;
 use super::shape::{Corners, Shape};
 use super::{Format, ReadOptions};
+use crate::attribute::Values;
 use crate::soup::{Coordinates, Labels, Scalars, Soup};
 use crate::spool::Spill;
 
@@ -55,6 +57,7 @@ pub(super) struct Intake {
     spill: Option<Spill>,
     pub(super) report: ReadReport,
     drop_degenerate: bool,
+    pub(super) attributes: Attributes,
     /// Whether each vertex lies inside a cell of higher order; short of those that do not.
     inner: Vec<bool>,
 }
@@ -66,8 +69,30 @@ impl Intake {
             spill: options.spill.cloned(),
             report: ReadReport::new(format),
             drop_degenerate: options.drop_degenerate,
+            attributes: Attributes::new(options),
             inner: Vec::new(),
         }
+    }
+
+    /// Adds an attribute of the vertices, a row for each.
+    pub(super) fn vertex_attribute(&mut self, name: &str, components: usize, values: Values) {
+        self.attributes.add_of_vertices(name, components, values, &mut self.report.ignored);
+    }
+
+    /// Adds an attribute of the cells from number `first` on, a row for each.
+    pub(super) fn cell_attribute(&mut self, name: &str, components: usize, values: Values, first: usize) {
+        self.attributes.add_of_cells(name, components, values, first, &mut self.report.ignored);
+    }
+
+    /// Adds references, of the vertices or of the cells from the first on.
+    pub(super) fn references(&mut self, of_vertices: References, of_cells: References) {
+        self.attributes.add_references_of_vertices(of_vertices, &mut self.report.ignored);
+        self.attributes.add_references_of_cells(of_cells, &mut self.report.ignored);
+    }
+
+    /// Takes note of an attribute that is not to be kept.
+    pub(super) fn pass_over(&mut self, name: &[u8]) {
+        self.attributes.pass_over(name, &mut self.report.ignored);
     }
 
     /// Adds a simplex unless it repeats a vertex.
@@ -164,6 +189,7 @@ impl Intake {
             self.simplices.resize_with(dim + 1, Vec::new);
         }
         self.simplices[dim].extend_from_slice(vertices);
+        self.attributes.push(dim);
         if self.simplices[dim].len() >= SPILL {
             self.spill(dim);
         }
@@ -214,6 +240,10 @@ impl Intake {
         coordinates: Option<(usize, Scalars)>,
     ) -> (Soup, ReadReport) {
         let mut coordinates = coordinates.map(|(dim, values)| Coordinates { dim, values });
+        let num_vertices = labels.len();
+        // As they are numbered in the input.
+        let points = self.simplices.first().cloned().unwrap_or_default();
+        let mut left = None;
         if !self.inner.is_empty() {
             let mut stays = self.used(labels.len());
             // A node that no cell has was declared all the same.
@@ -223,15 +253,18 @@ impl Intake {
             self.report.inner_nodes_dropped = stays.iter().filter(|&&stays| !stays).count();
             self.renumber(&stays);
             (labels, coordinates) = retained(labels, coordinates, &stays);
+            left = Some(stays);
         }
         (0..self.simplices.len()).for_each(|dim| self.spill(dim));
-        let Self { simplices, spill, mut report, .. } = self;
+        let Self { simplices, spill, mut report, mut attributes, .. } = self;
+        report.refused_attributes = std::mem::take(&mut attributes.refused);
+        let attributes = attributes.finish(num_vertices, &points, left.as_deref(), &mut report.ignored);
         report.vertices = labels.len();
         report.simplices = match spill {
             Some(spill) => spill.counts(),
             None => simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).collect(),
         };
-        (Soup { labels, declared, coordinates, simplices }, report)
+        (Soup { labels, declared, coordinates, simplices, attributes }, report)
     }
 }
 

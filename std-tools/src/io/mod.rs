@@ -8,6 +8,7 @@
 //! `io` knows files and soups; it knows nothing of complexes.
 
 mod abaqus;
+mod attributes;
 pub(crate) mod cells;
 mod compression;
 mod cone;
@@ -67,6 +68,8 @@ pub struct ReadOptions<'a> {
     pub format: Option<Format>,
     /// Drop simplices that repeat a vertex, and count them, instead of refusing the input.
     pub drop_degenerate: bool,
+    /// Pass over the attributes of vertices and cells, which else are kept, or refused where they do not go into memory.
+    pub drop_attributes: bool,
     /// Where the simplices go instead of memory, for a complex larger than that; the soup then has none.
     pub spill: Option<&'a Spill>,
     /// Which vertices become one; by default the corners of STL's triangles with equal coordinates, and no others.
@@ -80,6 +83,7 @@ impl fmt::Debug for ReadOptions<'_> {
         f.debug_struct("ReadOptions")
             .field("format", &self.format)
             .field("drop_degenerate", &self.drop_degenerate)
+            .field("drop_attributes", &self.drop_attributes)
             .field("spill", &self.spill.is_some())
             .field("weld", &self.weld)
             .field("progress", &self.progress.is_some())
@@ -185,8 +189,15 @@ fn read_as(format: Format, source: &mut Source<'_>, options: &ReadOptions<'_>) -
     }
 }
 
-/// Welds what was read, if so told.
+/// Refuses attributes that were read for the disk, and welds what was read, if so told.
 fn welded((mut soup, mut report): (Soup, ReadReport), options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
+    if !report.refused_attributes.is_empty() {
+        let message = format!(
+            "the attributes {} are kept in memory alone; --drop-attributes leaves them out",
+            report.refused_attributes.join(", ")
+        );
+        return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+    }
     if let Some(weld) = options.weld {
         if options.spill.is_some() && weld != Weld::None {
             let message = "vertices are welded in memory alone; convert the mesh first, or build without a limit";

@@ -24,9 +24,13 @@ pub struct ReadReport {
     pub degenerate_dropped: usize,
     /// Facet corners (STL), and vertices if so told, that were welded to an earlier one.
     pub welded: usize,
+    /// Vertices with other attributes than the one that they were welded to, whose attributes stay.
+    pub welded_differing: usize,
     /// Nodes left out because they lie inside edges, faces or volumes of higher-order elements, whose corners alone
     /// are vertices (MSH).
     pub inner_nodes_dropped: usize,
+    /// The names of the attributes that are not kept, for the simplices are not in memory.
+    pub(super) refused_attributes: Vec<String>,
     /// Parts of the input that the reader does not know or does not use.
     pub ignored: Ignored,
 }
@@ -43,7 +47,9 @@ impl ReadReport {
             split_into: 0,
             degenerate_dropped: 0,
             welded: 0,
+            welded_differing: 0,
             inner_nodes_dropped: 0,
+            refused_attributes: Vec::new(),
             ignored: Ignored::default(),
         }
     }

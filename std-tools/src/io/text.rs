@@ -264,6 +264,13 @@ pub(super) fn parse_float<T: Float>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
+/// A floating-point number as above, NaN as any C library writes it.
+pub(super) fn parse_number<T: Float>(word: &[u8]) -> Option<T> {
+    let start = word.strip_prefix(b"-").unwrap_or(word);
+    let is_nan = start.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"nan"));
+    parse_float(if is_nan { b"NaN" } else { word })
+}
+
 /// `±digits[.digits]` of at most 19 digits, as sign, digits and a power of ten.
 fn short_decimal(word: &[u8]) -> Option<(bool, u64, i32)> {
     let (negative, digits) = match word {

@@ -5,8 +5,10 @@ use std::str::FromStr;
 
 use hashbrown::HashMap;
 
+use super::attributes;
 use super::error::{ErrorKind, Fault, Position};
 use super::report::ReadReport;
+use crate::attribute::Attribute;
 use crate::soup::{Labels, Scalars, Soup};
 
 /// Which vertices become one.
@@ -130,8 +132,14 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
         Labels::Integers(labels) => labels[vertex as usize].to_string(),
         Labels::Tokens(labels) => labels[vertex as usize].to_string(),
     };
+    let of_vertices: Vec<&Attribute> = soup.attributes.iter().filter(|attribute| attribute.dim == 0).collect();
+    let differs = |&(vertex, &target): &(usize, &u32)| {
+        of_vertices.iter().any(|attribute| !attribute.is_same(vertex, target as usize))
+    };
+    report.welded_differing += targets.iter().enumerate().filter(differs).count();
     for (dim, flat) in soup.simplices.iter_mut().enumerate() {
         let mut kept = Vec::with_capacity(flat.len());
+        let mut stays = Vec::new();
         for simplex in flat.chunks_exact(dim + 1) {
             let start = kept.len();
             kept.extend(simplex.iter().map(|&vertex| targets[vertex as usize]));
@@ -148,11 +156,16 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
                 report.degenerate_dropped += 1;
                 kept.truncate(start);
             }
+            stays.push(kept.len() > start);
+        }
+        if dim > 0 {
+            attributes::retain(&mut soup.attributes, dim, &stays);
         }
         kept.iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
         *flat = kept;
     }
     let labels = std::mem::replace(&mut soup.labels, Labels::Numbered(0));
+    attributes::retain(&mut soup.attributes, 0, &stays);
     let (labels, coordinates) = super::intake::retained(labels, soup.coordinates.take(), &stays);
     (soup.labels, soup.coordinates) = (labels, coordinates);
     report.vertices = soup.labels.len();

@@ -121,6 +121,9 @@ pub enum Error {
     /// [`VertexOrder::Rcm`] needs all edges in memory.
     #[error("the reverse Cuthill–McKee order needs all edges in memory; choose another")]
     Rcm,
+    /// Attributes are for complexes in memory.
+    #[error("attributes are kept of complexes in memory only; --drop-attributes leaves them out")]
+    Attributes,
     /// [`EncodeOptions::pairs`] is for complexes in memory.
     #[error("pairs are written of complexes in memory only")]
     Pairs,
@@ -210,6 +213,9 @@ fn build_in_pieces(
     }
     if encode.pairs {
         return Err(Error::Pairs);
+    }
+    if !soup.attributes.is_empty() {
+        return Err(Error::Attributes);
     }
     words::check(&soup.simplices, soup.labels.len())?;
     for (dim, simplices) in std::mem::take(&mut soup.simplices).into_iter().enumerate() {
