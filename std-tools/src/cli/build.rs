@@ -1,5 +1,6 @@
 //! `sig build`: meshes and lists of simplices become a complex in a file.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -7,7 +8,9 @@ use anyhow::Context;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
+use sig_core::format::Column;
 use sig_core::{Index, IndexWidth, SimplexId};
+use sig_tools::attribute;
 use sig_tools::build::external::{Resources, build_to_file};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
 use sig_tools::io::{self as readers, Compression, Format, MergeReport, ReadOptions, ReadReport, Weld};
@@ -105,6 +108,10 @@ pub(super) struct Cleaning {
     #[arg(long)]
     drop_degenerate: bool,
 
+    /// Leave out the attributes of vertices and cells: point and cell data, properties, references, groups
+    #[arg(long)]
+    drop_attributes: bool,
+
     /// Which vertices become one: none, those at one place (exact), or those at most DISTANCE apart; by default the corners
     /// of STL's triangles at one place
     #[arg(long, value_name = "none|exact|DISTANCE")]
@@ -114,7 +121,13 @@ pub(super) struct Cleaning {
 impl Cleaning {
     /// How to read an input of the given format.
     pub(super) fn options(&self, format: Option<Format>) -> ReadOptions<'static> {
-        ReadOptions { format, drop_degenerate: self.drop_degenerate, weld: self.weld, ..ReadOptions::default() }
+        ReadOptions {
+            format,
+            drop_degenerate: self.drop_degenerate,
+            drop_attributes: self.drop_attributes,
+            weld: self.weld,
+            ..ReadOptions::default()
+        }
     }
 }
 
@@ -170,10 +183,14 @@ impl Args {
             Arrays::Narrow(arrays) => counts(arrays),
             Arrays::Wide(arrays) => counts(arrays),
         };
+        let attributes = built.attributes.iter().map(|attribute::Attribute { name, dim, components, values }| {
+            Attribute::new(name, *dim, *components, &values.column())
+        });
         Ok(Report {
             output: path.display().to_string(),
             file_bytes: encoding.file_bytes()?,
             index_bits: encoding.width().bits(),
+            attributes: attributes.collect(),
             ..Report::new(simplices, &built.report, inputs, &merged)
         })
     }
@@ -280,9 +297,47 @@ struct Report {
     conflicting_orientations: usize,
     unused_vertices_kept: usize,
     unused_vertices_dropped: usize,
+    attributes: Vec<Attribute>,
+    /// The names of those that inputs have in different shapes.
+    attributes_left_out: Vec<String>,
+    repeated_with_other_attributes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     out_of_core: Option<OutOfCore>,
     seconds: f64,
+}
+
+/// An attribute that is kept.
+#[derive(Serialize)]
+pub(super) struct Attribute {
+    name: String,
+    dimension: usize,
+    #[serde(rename = "type")]
+    scalar: &'static str,
+    components: usize,
+}
+
+impl Attribute {
+    pub(super) fn new(name: &str, dimension: usize, components: usize, column: &Column<'_>) -> Self {
+        Self { name: name.to_owned(), dimension, scalar: attribute::type_name(column), components }
+    }
+
+    /// Lists some, by dimension: `dimension 0: red u8, normal 3 × f32; dimension 2: ref i32`.
+    pub(super) fn list(attributes: &[Self]) -> String {
+        let of_dim = |attributes: &[Self]| {
+            let names: Vec<_> = attributes.iter().map(ToString::to_string).collect();
+            format!("dimension {}: {}", attributes.first().map_or(0, |first| first.dimension), names.join(", "))
+        };
+        attributes.chunk_by(|a, b| a.dimension == b.dimension).map(of_dim).collect::<Vec<_>>().join("; ")
+    }
+}
+
+impl fmt::Display for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.components {
+            1 => write!(f, "{} {}", self.name, self.scalar),
+            many => write!(f, "{} {many} × {}", self.name, self.scalar),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -312,6 +367,7 @@ pub(super) struct Input {
     split_into: usize,
     degenerate_dropped: usize,
     welded: usize,
+    welded_with_other_attributes: usize,
     inner_nodes_dropped: usize,
     ignored: u64,
     ignored_names: Vec<String>,
@@ -337,6 +393,7 @@ impl Input {
             split_into: report.split_into,
             degenerate_dropped: report.degenerate_dropped,
             welded: report.welded,
+            welded_with_other_attributes: report.welded_differing,
             inner_nodes_dropped: report.inner_nodes_dropped,
             ignored: report.ignored.count,
             ignored_names: report.ignored.names,
@@ -355,6 +412,7 @@ impl Input {
         note(self.polygons + self.polyhedra, &split);
         note(self.degenerate_dropped, "simplices dropped that repeat a vertex");
         note(self.welded, "corners or vertices welded to one at the same place or near");
+        note(self.welded_with_other_attributes, "of them with other attributes than the one that stays");
         note(self.inner_nodes_dropped, "nodes dropped that lie inside elements of higher order");
         if self.ignored > 0 {
             output::log(format_args!(
@@ -385,6 +443,8 @@ impl Report {
             conflicting_orientations: conflicting,
             unused_vertices_kept: unused_kept,
             unused_vertices_dropped: unused_dropped,
+            repeated_with_other_attributes: report.differing,
+            attributes_left_out: merged.attributes_left_out.iter().map(ToString::to_string).collect(),
             ..Self::default()
         }
     }
@@ -398,10 +458,18 @@ impl Report {
         }
         output::log(format_args!("built  dimension {}, {}", self.dimension, output::counted(&self.simplices)));
         note(self.repeated, "simplices merged that repeat another");
+        note(self.repeated_with_other_attributes, "of them with other attributes than the first, which stay");
         note(self.non_maximal, "simplices merged that are faces of others");
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");
         note(self.unused_vertices_kept, "unused vertices kept (--drop-unused drops them)");
         note(self.unused_vertices_dropped, "unused vertices dropped");
+        if !self.attributes.is_empty() {
+            output::log(format_args!("       attributes of {}", Attribute::list(&self.attributes)));
+        }
+        if !self.attributes_left_out.is_empty() {
+            let names = self.attributes_left_out.join(", ");
+            output::log(format_args!("       attributes left out, as inputs have them in different shapes: {names}"));
+        }
         if let Some(OutOfCore { pieces, temporary_bytes, peak_bytes }) = &self.out_of_core {
             let (pieces, bytes) = (grouped(pieces), grouped(temporary_bytes));
             let peak = peak_bytes.map_or(String::new(), |peak| format!(", {} bytes of memory", grouped(peak)));
