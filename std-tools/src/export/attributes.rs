@@ -103,7 +103,7 @@ impl<'v> Attribute<'v> {
                 (Some(Number::Integer(integer)), _) => write!(out, " {integer}")?,
                 #[expect(clippy::cast_possible_truncation, reason = "it was single before")]
                 (Some(Number::Float(float)), Column::F32(_)) if float.is_finite() => {
-                    write!(out, " {:?}", float as f32)?
+                    write!(out, " {:?}", float as f32)?;
                 }
                 (Some(Number::Float(float)), _) => write_double(float, out)?,
                 (None, Column::F32(_) | Column::F64(_)) => write_double(f64::NAN, out)?,

@@ -16,7 +16,7 @@ pub(super) fn write<'v, V: Relations>(mesh: &Mesh<'v, V>, out: &mut dyn Write) -
     let (vertices, cells, mut left_out) = Attribute::all(mesh.complex, 3);
     left_out.extend(vertices.iter().map(|attribute| attribute.name));
     let (references, others): (Vec<Attribute<'v>>, Vec<Attribute<'v>>) =
-        cells.into_iter().partition(|attribute| attribute.is_reference());
+        cells.into_iter().partition(Attribute::is_reference);
     left_out.extend(others.iter().map(|attribute| attribute.name));
     let mut converted = Vec::new();
     let dim = mesh.dim();

@@ -1,6 +1,7 @@
 //! Tests of the readers: real files against counts from elsewhere, then each format, then all formats together.
 
 mod agreement;
+mod attributes;
 mod detection;
 mod fixtures;
 mod foreign;
