@@ -44,6 +44,17 @@ impl Labels {
         if numbered { Self::Numbered(labels.len()) } else { Self::Integers(labels) }
     }
 
+    /// The label of the vertex with a number, as text; the number itself if there is no such vertex.
+    #[must_use]
+    pub fn name(&self, vertex: u32) -> String {
+        let row = vertex as usize;
+        match self {
+            Self::Integers(labels) => labels.get(row).map_or_else(|| vertex.to_string(), u64::to_string),
+            Self::Tokens(labels) => labels.get(row).map_or_else(|| vertex.to_string(), ToString::to_string),
+            Self::Numbered(_) => vertex.to_string(),
+        }
+    }
+
     /// The number of vertices.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -31,6 +31,8 @@ pub struct BuildReport {
     pub unused_kept: usize,
     /// Declared vertices that no listed simplex uses, dropped.
     pub unused_dropped: usize,
+    /// The labels of the first of the unused vertices.
+    pub first_unused: Vec<String>,
     /// Top simplices, of each dimension.
     pub top_simplices: Vec<usize>,
 }

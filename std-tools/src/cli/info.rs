@@ -405,9 +405,7 @@ impl Summary {
         }
         rows.push(vec!["vertex labels".to_owned(), self.labels.to_owned()]);
         rows.push(vec!["coordinates".to_owned(), coordinates]);
-        if !self.attributes.is_empty() {
-            rows.push(vec!["attributes".to_owned(), Attribute::list(&self.attributes)]);
-        }
+        rows.extend(Attribute::list(&self.attributes).map(|(title, names)| vec![title, names]));
         let filtration = self.filtration.map(|[least, most]| format!("{least} to {most}"));
         rows.push(vec!["filtration values".to_owned(), filtration.unwrap_or("none".to_owned())]);
         if let Some(provenance) = &self.provenance {

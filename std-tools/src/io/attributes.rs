@@ -88,6 +88,14 @@ impl Attributes {
         }
     }
 
+    /// Leaves only the simplices of a dimension that stay.
+    pub(super) fn retain_origins(&mut self, dim: Dim, stays: &[bool]) {
+        if let Some(origins) = self.origins.get_mut(dim).filter(|origins| !origins.is_empty()) {
+            let mut each = stays.iter();
+            origins.retain(|_| each.next() == Some(&true));
+        }
+    }
+
     /// Whether an attribute can be kept under its name and with as many components; notes it if not.
     fn has_room(&self, name: &str, components: usize, ignored: &mut Ignored) -> bool {
         let is_name = !name.is_empty() && name.len() <= usize::from(u16::MAX) && !name.contains('\0');

@@ -86,7 +86,8 @@ impl Mesh {
             words.first_byte()?;
             let position = words.source.end_of_text();
             for node in &mut nodes {
-                *node = words.vertex(1, self.vertices, "a vertex of a cell, as many cells as the section says")?;
+                let found = words.vertex(1, self.vertices, "a vertex of a cell, as many cells as the section says");
+                *node = found.or_else(|fault| self.intake.missing(fault))?;
             }
             self.of_cells.push(words.integer("the reference of the cell, an integer")?);
             self.intake.attributes.begin_cell(self.num_cells);

@@ -118,6 +118,7 @@ impl Mesh {
         };
         if let Some((vertex, position)) = self.greatest
             && vertex >= count
+            && !self.intake.drops_bad()
         {
             let kind = ErrorKind::OutOfRange { index: vertex.into(), vertices: count.into(), first: 0 };
             return Err(Fault::new(position, kind));

@@ -61,6 +61,17 @@ use crate::spool::Spill;
 use error::Fault;
 use source::Source;
 
+/// What becomes of cells and vertices that cannot be part of a complex.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum OnBad {
+    /// The input is refused.
+    #[default]
+    Refuse,
+    /// They are dropped and counted, and the first are named: cells that repeat a vertex or name one that is not there,
+    /// vertices whose coordinates are not finite, and the cells at these.
+    Drop,
+}
+
 /// How to read. Make one by `ReadOptions { format: Some(Format::Off), ..Default::default() }`.
 #[derive(Clone, Copy, Default)]
 pub struct ReadOptions<'a> {
@@ -68,6 +79,8 @@ pub struct ReadOptions<'a> {
     pub format: Option<Format>,
     /// Drop simplices that repeat a vertex, and count them, instead of refusing the input.
     pub drop_degenerate: bool,
+    /// What becomes of cells that name a vertex which is not there, and of vertices whose coordinates are not finite.
+    pub on_bad: OnBad,
     /// Pass over the attributes of vertices and cells, which else are kept, or refused where they do not go into memory.
     pub drop_attributes: bool,
     /// Where the simplices go instead of memory, for a complex larger than that; the soup then has none.
@@ -78,11 +91,19 @@ pub struct ReadOptions<'a> {
     pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
 }
 
+impl ReadOptions<'_> {
+    /// Whether simplices that repeat a vertex are dropped.
+    const fn drops_degenerate(&self) -> bool {
+        self.drop_degenerate || matches!(self.on_bad, OnBad::Drop)
+    }
+}
+
 impl fmt::Debug for ReadOptions<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ReadOptions")
             .field("format", &self.format)
             .field("drop_degenerate", &self.drop_degenerate)
+            .field("on_bad", &self.on_bad)
             .field("drop_attributes", &self.drop_attributes)
             .field("spill", &self.spill.is_some())
             .field("weld", &self.weld)
@@ -155,7 +176,7 @@ fn read_sized(
     options: &ReadOptions<'_>,
 ) -> Result<(Soup, ReadReport), ReadError> {
     let run = || {
-        Source::new(reader, length, options.progress)?.reading(|source| {
+        Source::new(reader, length, options.progress)?.on_bad(options.on_bad).reading(|source| {
             let format = match options.format {
                 Some(format) => format,
                 None => detect::format(source, name)?,
@@ -198,12 +219,17 @@ fn welded((mut soup, mut report): (Soup, ReadReport), options: &ReadOptions<'_>)
         );
         return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
     }
+    if options.spill.is_some() && options.on_bad == OnBad::Drop {
+        let message =
+            "bad cells and vertices are dropped in memory alone; convert the mesh first, or build without a limit";
+        return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+    }
     if let Some(weld) = options.weld {
         if options.spill.is_some() && weld != Weld::None {
             let message = "vertices are welded in memory alone; convert the mesh first, or build without a limit";
             return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
         }
-        weld::weld(&mut soup, &mut report, weld, options.drop_degenerate)?;
+        weld::weld(&mut soup, &mut report, weld, options.drops_degenerate())?;
     }
     Ok((soup, report))
 }

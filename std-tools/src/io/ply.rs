@@ -9,7 +9,7 @@ use super::error::{ErrorKind, Fault, Position};
 use super::intake::{Intake, Refusal};
 use super::source::Source;
 use super::text::{Line, parse_float, parse_number};
-use super::{Format, ReadOptions, ReadReport};
+use super::{Format, OnBad, ReadOptions, ReadReport};
 use crate::attribute::{Number, Values};
 use crate::soup::{Labels, Scalars, Soup};
 
@@ -416,6 +416,7 @@ fn binary_row(
     source: &mut Source<'_>,
     element: &Element,
     encoding: Encoding,
+    on_bad: OnBad,
     row: &mut Row,
 ) -> Result<Place<'static>, Fault> {
     const EXPECTED: &str = "as many rows of the element as the header says";
@@ -426,7 +427,7 @@ fn binary_row(
         let position = source.byte();
         let Some(of_length) = property.length else {
             let value = property.scalar.decode(source.take(size, EXPECTED)?, encoding);
-            if property.used && !value.is_finite() {
+            if property.used && !value.is_finite() && on_bad == OnBad::Refuse {
                 return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
             }
             *scalar = value;
@@ -476,12 +477,12 @@ struct Ply {
 
 impl Ply {
     /// The number of an existing vertex.
-    fn vertex(&self, index: i64, position: impl FnOnce() -> Position) -> Result<u32, Fault> {
+    fn vertex(&mut self, index: i64, position: impl FnOnce() -> Position) -> Result<u32, Fault> {
         match u32::try_from(index) {
             Ok(vertex) if vertex < self.vertices => Ok(vertex),
             _ => {
                 let kind = ErrorKind::OutOfRange { index, vertices: self.vertices.into(), first: 0 };
-                Err(Fault::new(position(), kind))
+                self.intake.missing(Fault::new(position(), kind))
             }
         }
     }
@@ -611,7 +612,7 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
                 columns.push(&row.scalars);
                 ply.row(role, &row, &Place::Text(line, list))?;
             } else {
-                let place = binary_row(source, element, encoding, &mut row)?;
+                let place = binary_row(source, element, encoding, options.on_bad, &mut row)?;
                 columns.push(&row.scalars);
                 ply.row(role, &row, &place)?;
             }

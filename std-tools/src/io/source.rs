@@ -6,6 +6,7 @@
 use std::borrow::Cow;
 use std::io::{self, Read};
 
+use super::OnBad;
 use super::compression::Compression;
 use super::error::{ErrorKind, Excerpt, Fault, Position, excerpt};
 use super::text::{Line, Origin};
@@ -55,6 +56,7 @@ pub(super) struct Source<'a> {
     pub(super) compression: Option<Compression>,
     /// Whether binary data have come, after which lines cannot be counted and places are bytes.
     pub(super) binary: bool,
+    on_bad: OnBad,
 }
 
 impl<'a> Source<'a> {
@@ -79,6 +81,11 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
+    /// The same, whose lines take numbers that are not finite for coordinates if they are to be dropped.
+    pub(super) fn on_bad(self, on_bad: OnBad) -> Self {
+        Self { on_bad, ..self }
+    }
+
     fn over(reader: Box<dyn Read + 'a>, length: Option<u64>) -> Self {
         Self {
             reader,
@@ -92,6 +99,7 @@ impl<'a> Source<'a> {
             length,
             compression: None,
             binary: false,
+            on_bad: OnBad::Refuse,
         }
     }
 
@@ -306,7 +314,7 @@ impl<'a> Source<'a> {
             self.lines += 1;
             self.line_begin = self.offset();
         }
-        Line::new(&self.buffer[text], origin)
+        Line::new(&self.buffer[text], origin).on_bad(self.on_bad)
     }
 
     /// What places in text that begins with the next byte are counted from.
@@ -373,7 +381,7 @@ impl<'a> Source<'a> {
         }
         let (word, origin) = (self.start..self.start + length, self.origin());
         self.start = word.end;
-        Ok(Some(Line::new(&self.buffer[word], origin)))
+        Ok(Some(Line::new(&self.buffer[word], origin).on_bad(self.on_bad)))
     }
 
     /// Like [`Self::next_word`], a fault if there is none.

@@ -127,11 +127,6 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
             left.wrapping_sub(1)
         })
         .collect();
-    let name = |vertex: u32, labels: &Labels| match labels {
-        Labels::Numbered(_) => vertex.to_string(),
-        Labels::Integers(labels) => labels[vertex as usize].to_string(),
-        Labels::Tokens(labels) => labels[vertex as usize].to_string(),
-    };
     let of_vertices: Vec<&Attribute> = soup.attributes.iter().filter(|attribute| attribute.dim == 0).collect();
     let differs = |&(vertex, &target): &(usize, &u32)| {
         of_vertices.iter().any(|attribute| !attribute.is_same(vertex, target as usize))
@@ -144,8 +139,8 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
             let start = kept.len();
             kept.extend(simplex.iter().map(|&vertex| targets[vertex as usize]));
             if super::cone::repeated(&kept[start..]).is_some() {
+                let names: Vec<_> = simplex.iter().map(|&vertex| soup.labels.name(vertex)).collect();
                 if !drop_degenerate {
-                    let names: Vec<_> = simplex.iter().map(|&vertex| name(vertex, &soup.labels)).collect();
                     let message = format!(
                         "the simplex {} repeats a vertex once vertices are welded; --drop-degenerate drops such cells and \
                          counts them",
@@ -153,6 +148,8 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
                     );
                     return Err(Fault::new(Position::Whole, ErrorKind::Rule(message.into())));
                 }
+                let names = names.join(",");
+                report.note_bad(format!(": the simplex {names} repeats a vertex once vertices are welded"));
                 report.degenerate_dropped += 1;
                 kept.truncate(start);
             }

@@ -233,6 +233,7 @@ fn build_in_pieces(
         Pieces::count(&Listed { spill: &spill, order: &order }, resources, cut, &meter)?;
     let temporary_bytes = spill.bytes() + words.spool.bytes() + borders.bytes();
     drop(spill);
+    let first_unused = order.name_unused(&labels, declared);
     let (labels, coordinates) = order.permute(labels, coordinates);
     drop(order);
     let whole = Whole::new(&counted);
@@ -243,6 +244,7 @@ fn build_in_pieces(
         listed,
         unused_kept: if keep_unused { num_unused } else { 0 },
         unused_dropped: if keep_unused || !declared { 0 } else { num_unused },
+        first_unused,
         top_simplices: vec![0; whole.first.len()],
         ..BuildReport::default()
     };

@@ -1,7 +1,8 @@
 //! MSH, the mesh format of Gmsh: versions 2.0 to 2.2 and 4.1, in text and binary of both byte orders.
 //!
-//! This file reads the sections and holds the mesh; `v2` and `v4` read nodes and elements, `entities` physical groups, `shapes` knows the element
-//! types. Cells of every dimension are kept. The physical group of an element is its attribute `ref`, and `data` reads others. Elements of higher order stand for their corners; a node that is never a
+//! This file reads the sections and holds the mesh; `v2` and `v4` read nodes and elements, `entities` physical groups,
+//! `shapes` knows the element types. Cells of every dimension are kept. The physical group of an element is its
+//! attribute `ref`, and `data` reads others. Elements of higher order stand for their corners; a node that is never a
 //! corner and lies in such an element is no vertex. Sections other than nodes and elements are passed over.
 
 mod data;
@@ -12,12 +13,12 @@ mod v2;
 mod v4;
 
 use super::attributes::References;
-use super::error::{ErrorKind, Fault};
+use super::error::{ErrorKind, Fault, Position};
 use super::intake::Intake;
 use super::shape::Shape;
 use super::source::{Source, truncated};
 use super::text::{Line, Word};
-use super::{Format, ReadOptions, ReadReport};
+use super::{Format, OnBad, ReadOptions, ReadReport};
 use crate::soup::{Labels, Scalars, Soup};
 use entities::Groups;
 use shapes::shape;
@@ -70,14 +71,20 @@ impl Mesh {
     /// Adds the element of the given shape whose nodes are `self.word`.
     fn element(&mut self, shape: Shape) -> Result<(), ErrorKind> {
         let tags = self.nodes.as_slice();
-        let label = |vertex: u32| tags[vertex as usize];
+        let label = |vertex: u32| tags.get(vertex as usize).copied().unwrap_or(0);
         let added = self.intake.element(shape, &self.word, label);
         added.map_err(|refusal| refusal.kind(|vertex| label(vertex).to_string()))
     }
 
     /// The vertex number of the node with a tag.
-    fn node(&self, tag: u64) -> Result<u32, ErrorKind> {
-        self.nodes.find(tag).ok_or(ErrorKind::UnknownNode { tag, nodes: self.nodes.len() as u64 })
+    fn node(&mut self, tag: u64, position: impl FnOnce() -> Position) -> Result<u32, Fault> {
+        match self.nodes.find(tag) {
+            Some(node) => Ok(node),
+            None => {
+                let kind = ErrorKind::UnknownNode { tag, nodes: self.nodes.len() as u64 };
+                self.intake.missing(Fault::new(position(), kind))
+            }
+        }
     }
 
     /// Reads the nodes of an element from the rest of a line of text, and adds it.
@@ -86,7 +93,7 @@ impl Mesh {
         for _ in 0..shape.num_nodes {
             let word = line.need_word("as many node tags as the type of the element asks for")?;
             let tag = line.parse_integer(word, "a node tag")?;
-            let node = self.node(tag).map_err(|kind| line.fault(word.at, kind))?;
+            let node = self.node(tag, || line.position(word.at))?;
             self.word.push(node);
         }
         line.end()?;
@@ -298,12 +305,12 @@ impl Binary {
     }
 
     /// The next three coordinates.
-    fn point(self, source: &mut Source<'_>) -> Result<[f64; 3], Fault> {
+    fn point(self, source: &mut Source<'_>, on_bad: OnBad) -> Result<[f64; 3], Fault> {
         let mut point = [0.0; 3];
         for value in &mut point {
             let position = source.byte();
             *value = self.float(source, "a coordinate of the node")?;
-            if !value.is_finite() {
+            if !value.is_finite() && on_bad == OnBad::Refuse {
                 return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
             }
         }

@@ -31,7 +31,7 @@ pub(super) fn nodes(source: &mut Source<'_>, encoding: Encoding, mesh: &mut Mesh
                 if !mesh.nodes.push(binary.count(source, EXPECTED)?) {
                     return Err(Fault::new(source.byte(), ErrorKind::TooManyVertices));
                 }
-                mesh.points.extend(binary.point(source)?);
+                mesh.points.extend(binary.point(source, mesh.intake.on_bad)?);
             }
         }
     }
@@ -89,7 +89,7 @@ fn binary_elements(source: &mut Source<'_>, binary: Binary, count: u64, mesh: &m
             for _ in 0..shape.num_nodes {
                 let position = source.byte();
                 let tag = binary.count(source, EXPECTED)?;
-                let node = mesh.node(tag).map_err(|kind| Fault::new(position, kind))?;
+                let node = mesh.node(tag, || position)?;
                 mesh.word.push(node);
             }
             mesh.element(shape).map_err(|kind| Fault::new(start, kind))?;

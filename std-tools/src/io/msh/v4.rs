@@ -99,7 +99,7 @@ fn binary_node_block(source: &mut Source<'_>, binary: Binary, size: usize, mesh:
         }
     }
     for _ in 0..count {
-        mesh.points.extend(binary.point(source)?);
+        mesh.points.extend(binary.point(source, mesh.intake.on_bad)?);
         if parametric {
             source.skip(8 * dim.min(3), "the parametric coordinates of the node")?;
         }
@@ -155,7 +155,7 @@ fn binary_element_block(source: &mut Source<'_>, binary: Binary, size: usize, me
         for _ in 0..shape.num_nodes {
             let position = source.byte();
             let tag = binary.size(source, size, "as many node tags as the type of the element asks for")?;
-            let node = mesh.node(tag).map_err(|kind| Fault::new(position, kind))?;
+            let node = mesh.node(tag, || position)?;
             mesh.word.push(node);
         }
         mesh.element(shape).map_err(|kind| Fault::new(start, kind))?;

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod attributes;
+mod bad;
 mod detection;
 mod fixtures;
 mod foreign;

@@ -4,6 +4,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
+use super::super::OnBad;
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::source::{Source, truncated};
 use super::{Type, Values};
@@ -19,6 +20,8 @@ pub(super) struct Layout {
     pub(super) wide: bool,
     /// Whether arrays are compressed by zlib.
     pub(super) zlib: bool,
+    /// What becomes of numbers that are not possible.
+    pub(super) on_bad: OnBad,
 }
 
 /// The values of base64's digits; 64 for bytes that are none.
@@ -128,7 +131,8 @@ impl<'s, 'a> Bytes<'s, 'a> {
 
     /// Reads an array of numbers of the given type into `values`.
     pub(super) fn array(&mut self, layout: Layout, scalar: Type, values: &mut Values) -> Result<(), Fault> {
-        let mut numbers = Numbers { scalar, big_endian: layout.big_endian, left: Vec::new(), values };
+        let mut numbers =
+            Numbers { scalar, on_bad: layout.on_bad, big_endian: layout.big_endian, left: Vec::new(), values };
         if !layout.zlib {
             let mut length = self.length(layout)?;
             let mut piece = vec![0; PIECE];
@@ -184,6 +188,7 @@ const EXPECTED: &str = "as much binary data as the array has";
 /// Numbers out of bytes that come in pieces of any length.
 struct Numbers<'v> {
     scalar: Type,
+    on_bad: OnBad,
     big_endian: bool,
     /// The start of a number whose end has not come.
     left: Vec<u8>,
@@ -198,7 +203,7 @@ impl Numbers<'_> {
             bytes = &bytes[1..];
             if self.left.len() == size {
                 let number = self.scalar.decode(&self.left, self.big_endian);
-                self.values.push(number).map_err(|kind| Fault::new(position, kind))?;
+                self.values.push(number, self.on_bad).map_err(|kind| Fault::new(position, kind))?;
                 self.left.clear();
             }
         }
@@ -207,7 +212,7 @@ impl Numbers<'_> {
                 self.left.extend(number);
             } else {
                 let number = self.scalar.decode(number, self.big_endian);
-                self.values.push(number).map_err(|kind| Fault::new(position, kind))?;
+                self.values.push(number, self.on_bad).map_err(|kind| Fault::new(position, kind))?;
             }
         }
         Ok(())

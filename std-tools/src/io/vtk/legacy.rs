@@ -67,12 +67,12 @@ impl File {
     ) -> Result<(), Fault> {
         if self.binary {
             return source.each_record(count, scalar.size(), expected, |position, bytes| {
-                values.push(scalar.decode(bytes, true)).map_err(|kind| Fault::new(position, kind))
+                values.push(scalar.decode(bytes, true), self.intake.on_bad).map_err(|kind| Fault::new(position, kind))
             });
         }
         let mut words = Words::new(source, None);
         for _ in 0..count {
-            values.push_text(&words.need(expected)?)?;
+            values.push_text(&words.need(expected)?, self.intake.on_bad)?;
         }
         Ok(())
     }

@@ -13,8 +13,9 @@ mod xml;
 pub(super) use legacy::read as read_legacy;
 pub(super) use xml::read as read_xml;
 
+use super::OnBad;
 use super::error::{ErrorKind, Fault, Position};
-use super::intake::Intake;
+use super::intake::{Intake, NOWHERE};
 use super::text::{Line, parse_number};
 use crate::attribute::{self, Number};
 use crate::soup::Scalars;
@@ -155,7 +156,7 @@ impl Values {
 
     /// Adds a number; what is wrong with it, if it is not possible here.
     #[expect(clippy::cast_possible_truncation, reason = "single precision goes to single precision")]
-    fn push(&mut self, number: Number) -> Result<(), ErrorKind> {
+    fn push(&mut self, number: Number, on_bad: OnBad) -> Result<(), ErrorKind> {
         if let Self::Data(values) = self {
             return if values.push(number) { Ok(()) } else { Err(self.refusal(number)) };
         }
@@ -164,16 +165,18 @@ impl Values {
             Number::Integer(number) => number as f64,
             Number::Float(number) => number,
         };
+        let drops = on_bad == OnBad::Drop;
         let integer = match number {
             Number::Integer(number) => u64::try_from(number).ok(),
             Number::Float(_) => None,
         };
         match (&mut *self, integer) {
-            (Self::Points(Scalars::F32(values)), _) if float.is_finite() => values.push(float as f32),
-            (Self::Points(Scalars::F64(values)), _) if float.is_finite() => values.push(float),
+            (Self::Points(Scalars::F32(values)), _) if float.is_finite() || drops => values.push(float as f32),
+            (Self::Points(Scalars::F64(values)), _) if float.is_finite() || drops => values.push(float),
             (Self::Vertices(values, vertices), Some(number)) if number < u64::from(*vertices) => {
                 values.push(number as u32);
             }
+            (Self::Vertices(values, _), _) if drops => values.push(NOWHERE),
             (Self::Ends(values) | Self::Labels(values), Some(number)) => values.push(number),
             (Self::Types(values), Some(number)) if number < 256 => values.push(number as u8),
             _ => return Err(self.refusal(number)),
@@ -182,7 +185,7 @@ impl Values {
     }
 
     /// Adds a number in text, which is all of the line.
-    fn push_text(&mut self, line: &Line<'_>) -> Result<(), Fault> {
+    fn push_text(&mut self, line: &Line<'_>, on_bad: OnBad) -> Result<(), Fault> {
         const COORDINATE: &str = "a coordinate of a point";
         match self {
             Self::Points(Scalars::F32(values)) => values.push(line.parse_finite(line.as_word(), COORDINATE)?),
@@ -201,11 +204,11 @@ impl Values {
                 let text = std::str::from_utf8(line.as_word().bytes).ok();
                 let number = text.and_then(|text| text.parse().ok());
                 let number = number.ok_or_else(|| line.unexpected(line.as_word(), "an integer"))?;
-                self.push(Number::Integer(number)).map_err(|kind| line.fault(0, kind))?;
+                self.push(Number::Integer(number), OnBad::Refuse).map_err(|kind| line.fault(0, kind))?;
             }
             _ => {
                 let number: i64 = line.parse_integer(line.as_word(), "an integer")?;
-                self.push(Number::Integer(number.into())).map_err(|kind| line.fault(0, kind))?;
+                self.push(Number::Integer(number.into()), on_bad).map_err(|kind| line.fault(0, kind))?;
             }
         }
         Ok(())
@@ -247,6 +250,9 @@ impl Cells<'_> {
             // A sum that does not fit was refused with the number of points.
             word.extend(vertices.iter().map(|vertex| vertex.saturating_add(shift)));
             intake.attributes.begin_cell(before + cell);
+            if word.contains(&NOWHERE) {
+                intake.report.note_bad(format!(": cell {} names a vertex that is not there", before + cell));
+            }
             shapes::add(kind, &word, intake).map_err(|kind| fault(format!("cell {cell}: {kind}")))?;
             start = end;
         }

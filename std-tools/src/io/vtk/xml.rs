@@ -1,15 +1,16 @@
 //! VTK's XML formats for unstructured grids (`.vtu`) and poly data (`.vtp`).
 //!
-//! Arrays may stand in text, inline in base64, or appended raw or in base64, plain or compressed by zlib. Of the data at the
-//! points an array of integers called `label` gives what the vertices are called, as this program writes it; an array of the
-//! dimensions of the cells, which it writes too, says nothing new. A library for XML is of no help: raw appended data are no XML, and text would be held whole.
+//! Arrays may stand in text, inline in base64, or appended raw or in base64, plain or compressed by zlib. Of the data
+//! at the points an array of integers called `label` gives what the vertices are called, as this program writes it; an
+//! array of the dimensions of the cells, which it writes too, says nothing new. A library for XML is of no help: raw
+//! appended data are no XML, and text would be held whole.
 
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::intake::Intake;
 use super::super::source::{Source, truncated};
 use super::super::tags::{self, Tag};
 use super::super::words::Words;
-use super::super::{Format, ReadOptions, ReadReport};
+use super::super::{Format, OnBad, ReadOptions, ReadReport};
 use super::bytes::{Bytes, Layout};
 use super::legacy::Of;
 use super::{Cells, Type, Types, Values};
@@ -154,7 +155,7 @@ fn layout(tag: &Tag) -> Result<Layout, Fault> {
         }
     };
     let big_endian = tag.get("byte_order") == Some("BigEndian");
-    Ok(Layout { big_endian, wide: tag.get("header_type") == Some("UInt64"), zlib })
+    Ok(Layout { on_bad: OnBad::Refuse, big_endian, wide: tag.get("header_type") == Some("UInt64"), zlib })
 }
 
 /// What the array of a tag in the element `section` is for, if the reader needs it.
@@ -205,7 +206,7 @@ impl Grid {
             "ascii" => {
                 let mut words = Words::before(source, b'<');
                 while let Some(line) = words.next()? {
-                    values.push_text(&line)?;
+                    values.push_text(&line, self.layout.on_bad)?;
                 }
             }
             "binary" => {
@@ -417,7 +418,13 @@ pub(in super::super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>)
     let first = tags::first(source, "VTKFile")?;
     let (pieces, appended) = (Vec::new(), Vec::new());
     let intake = Intake::new(Format::Vtu, options);
-    let mut grid = Grid { layout: layout(&first)?, pieces, appended, names: Vec::new(), intake };
+    let mut grid = Grid {
+        layout: Layout { on_bad: options.on_bad, ..layout(&first)? },
+        pieces,
+        appended,
+        names: Vec::new(),
+        intake,
+    };
     // The element within the piece.
     let mut section: Box<str> = "".into();
     loop {
