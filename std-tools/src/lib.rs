@@ -9,6 +9,7 @@
 //! | read meshes and lists of simplices | [`io`] | [`io::read_path`], [`io::merge`](io::merge()) |
 //! | read points, distances, graphs | [`io::space`] | [`io::space::read_space_path`] |
 //! | simplices on numbered vertices | [`soup`] | [`soup::Soup`] |
+//! | named columns at vertices and simplices | [`attribute`] | [`attribute::Attribute`] |
 //! | simplices on disk | [`spool`] | [`spool::Spill`] |
 //! | points and metrics | [`points`] | [`points::Points`], [`points::Metric`] |
 //! | all distances of a finite space | [`distances`] | [`distances::Distances`] |
@@ -60,6 +61,7 @@
 //! ```
 
 pub mod analysis;
+pub mod attribute;
 pub mod baselines;
 pub mod build;
 pub mod cells;

@@ -7,6 +7,7 @@ use sig_core::complex::columns;
 use sig_core::format::Column;
 use sig_core::{Dim, MAX_DIM, Relations, VertexId};
 
+use crate::attribute::Attribute;
 use crate::names::vertex_label;
 
 /// What the input calls its vertices; a vertex number of a [`Soup`] is a row of this table.
@@ -41,6 +42,17 @@ impl Labels {
     pub fn from_integers(labels: Vec<u64>) -> Self {
         let numbered = labels.iter().zip(0..).all(|(&label, number)| label == number);
         if numbered { Self::Numbered(labels.len()) } else { Self::Integers(labels) }
+    }
+
+    /// The label of the vertex with a number, as text; the number itself if there is no such vertex.
+    #[must_use]
+    pub fn name(&self, vertex: u32) -> String {
+        let row = vertex as usize;
+        match self {
+            Self::Integers(labels) => labels.get(row).map_or_else(|| vertex.to_string(), u64::to_string),
+            Self::Tokens(labels) => labels.get(row).map_or_else(|| vertex.to_string(), ToString::to_string),
+            Self::Numbered(_) => vertex.to_string(),
+        }
     }
 
     /// The number of vertices.
@@ -106,13 +118,16 @@ pub struct Soup {
     /// `simplices[p]` holds the p-simplices one after the other, `p + 1` vertex numbers each, in the input's order
     /// of simplices and of vertices within a simplex (the orientation). At most [`MAX_DIM`] + 1 arrays.
     pub simplices: Vec<Vec<u32>>,
+    /// Attributes, by dimension and name: of dimension 0 with a row for each vertex, else with one for each simplex of
+    /// the dimension, in the order of `simplices`.
+    pub attributes: Vec<Attribute>,
 }
 
 impl Soup {
     /// A soup of the given vertices without simplices.
     #[must_use]
     pub fn new(labels: Labels, declared: bool) -> Self {
-        Self { labels, declared, coordinates: None, simplices: Vec::new() }
+        Self { labels, declared, coordinates: None, simplices: Vec::new(), attributes: Vec::new() }
     }
 
     /// Adds one simplex, its vertex numbers in the input's order; of dimension at most [`MAX_DIM`], not empty.

@@ -227,6 +227,8 @@ fn shortened(column: Column<'_>, rows: usize) -> Column<'_> {
         Column::U16(values) => Column::U16(&values[..rows.min(values.len())]),
         Column::U32(values) => Column::U32(&values[..rows.min(values.len())]),
         Column::U64(values) => Column::U64(&values[..rows.min(values.len())]),
+        Column::I32(values) => Column::I32(&values[..rows.min(values.len())]),
+        Column::I64(values) => Column::I64(&values[..rows.min(values.len())]),
         Column::F32(values) => Column::F32(&values[..rows.min(values.len())]),
         Column::F64(values) => Column::F64(&values[..rows.min(values.len())]),
     }

@@ -189,6 +189,10 @@ pub enum Column<'a> {
     F32(&'a [f32]),
     /// Double-precision numbers.
     F64(&'a [f64]),
+    /// 32-bit integers with sign.
+    I32(&'a [i32]),
+    /// 64-bit integers with sign.
+    I64(&'a [i64]),
 }
 
 impl<'a> Column<'a> {
@@ -214,6 +218,8 @@ impl<'a> Column<'a> {
             Self::U64(column) => column.len(),
             Self::F32(column) => column.len(),
             Self::F64(column) => column.len(),
+            Self::I32(column) => column.len(),
+            Self::I64(column) => column.len(),
         }
     }
 
@@ -234,6 +240,8 @@ impl<'a> Column<'a> {
             Self::U64(column) => bytemuck::cast_slice(column),
             Self::F32(column) => bytemuck::cast_slice(column),
             Self::F64(column) => bytemuck::cast_slice(column),
+            Self::I32(column) => bytemuck::cast_slice(column),
+            Self::I64(column) => bytemuck::cast_slice(column),
         }
     }
 
@@ -304,6 +312,8 @@ impl<'a> Column<'a> {
             Self::U64(_) => 4,
             Self::F32(_) => 5,
             Self::F64(_) => 6,
+            Self::I32(_) => 7,
+            Self::I64(_) => 8,
         }
     }
 
@@ -318,6 +328,8 @@ impl<'a> Column<'a> {
             4 => Self::U64(bytemuck::try_cast_slice(bytes).ok()?),
             5 => Self::F32(bytemuck::try_cast_slice(bytes).ok()?),
             6 => Self::F64(bytemuck::try_cast_slice(bytes).ok()?),
+            7 => Self::I32(bytemuck::try_cast_slice(bytes).ok()?),
+            8 => Self::I64(bytemuck::try_cast_slice(bytes).ok()?),
             _ => return None,
         };
         (column.len() == len && bytes.len() as u64 == byte_len(code, len as u64)?).then_some(column)
@@ -398,8 +410,8 @@ pub(super) const fn element_bytes(code: u8) -> Option<usize> {
     match code {
         1 => Some(1),
         2 => Some(2),
-        3 | 5 => Some(4),
-        4 | 6 => Some(8),
+        3 | 5 | 7 => Some(4),
+        4 | 6 | 8 => Some(8),
         _ => None,
     }
 }

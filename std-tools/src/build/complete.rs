@@ -38,7 +38,7 @@ pub fn complete(tree: FrozenTree, options: &BuildOptions<'_>) -> Result<Built, B
     let top_simplices: Vec<usize> = is_top.iter().map(|tops| tops.iter().filter(|&&is_top| is_top).count()).collect();
     let report = BuildReport { listed: top_simplices.iter().sum(), top_simplices, ..BuildReport::default() };
     let arrays: Arrays = clusters::add(arrays, &is_top, &meter);
-    Ok(Built { arrays, labels, coordinates, parity: None, filtration, report })
+    Ok(Built { arrays, labels, coordinates, parity: None, filtration, attributes: Vec::new(), report })
 }
 
 /// Checks that the arrays have the shape of a tree in level order.

@@ -16,6 +16,7 @@
 //! the number of threads. Work runs in rayon's current pool.
 
 mod assemble;
+mod attributes;
 mod blocks;
 mod clusters;
 mod cofaces;
@@ -35,6 +36,7 @@ use std::collections::BTreeSet;
 
 use sig_core::{Dim, Index};
 
+use crate::attribute::Attribute;
 use crate::soup::{Coordinates, Labels, Soup};
 
 pub use complete::complete;
@@ -155,6 +157,20 @@ pub enum BuildError {
         vertices: usize,
         /// Scalars a vertex.
         dim: usize,
+    },
+    /// An attribute does not have a row for each vertex, or each simplex of its dimension.
+    #[error(
+        "attribute {index} has {values} numbers, which is not a row for each of {rows} simplices of dimension {dim}"
+    )]
+    MalformedAttribute {
+        /// Which of the attributes it is, from 0.
+        index: usize,
+        /// Its dimension.
+        dim: Dim,
+        /// The numbers that it has.
+        values: usize,
+        /// The rows that it must have.
+        rows: usize,
     },
     /// An order along a curve needs coordinates, and there are none.
     #[error("the Hilbert order needs coordinates, and the input has none")]
@@ -293,6 +309,8 @@ pub struct Built {
     pub parity: Option<Vec<u8>>,
     /// The filtration value of every simplex, at least that of its faces; no NaN, no −0.
     pub filtration: Option<Vec<f64>>,
+    /// Attributes by dimension and name, with a row for each simplex of the dimension in id order.
+    pub attributes: Vec<Attribute>,
     /// What the input held.
     pub report: BuildReport,
 }
@@ -300,7 +318,7 @@ pub struct Built {
 /// The listed words by dimension, and the vertices that are kept though unused: what [`crate::incidence_graph`] starts
 /// from.
 pub(crate) fn sorted_words(soup: &Soup, options: &BuildOptions<'_>) -> Result<Vec<BTreeSet<Vec<u32>>>, BuildError> {
-    let Soup { labels, declared, coordinates, simplices } = soup;
+    let Soup { labels, declared, coordinates, simplices, .. } = soup;
     let used = words::check(simplices, labels.len())?;
     Limit::new(soup, options)?;
     let keep_unused = *declared && options.unused == Unused::Keep;
@@ -348,7 +366,7 @@ type FoundFaces = (levels::Chunks, order::Order, usize, Labels, Option<Coordinat
 fn find_faces(soup: Soup, options: &BuildOptions<'_>, meter: &Meter<'_>) -> Result<FoundFaces, BuildError> {
     let used = words::check(&soup.simplices, soup.labels.len())?;
     let limit = Limit::new(&soup, options)?;
-    let Soup { labels, declared, coordinates, simplices } = soup;
+    let Soup { labels, declared, coordinates, simplices, .. } = soup;
     let keep_unused = declared && options.unused == Unused::Keep;
     let order = number_vertices(&labels, coordinates.as_ref(), &simplices, &used, keep_unused, options.order)?;
     let num_listed = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).sum();
@@ -358,8 +376,9 @@ fn find_faces(soup: Soup, options: &BuildOptions<'_>, meter: &Meter<'_>) -> Resu
 }
 
 /// Builds with 32-bit indices if there are up to `most_narrow` simplices.
-fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Result<Built, BuildError> {
+fn build_up_to(mut soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Result<Built, BuildError> {
     let meter = Meter::new(options.progress);
+    let listed = attributes::Listed::take(&mut soup)?;
     let declared = soup.declared;
     let keep_unused = declared && options.unused == Unused::Keep;
     let (chunks, order, num_listed, labels, coordinates) = find_faces(soup, options, &meter)?;
@@ -370,17 +389,23 @@ fn build_up_to(soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -> Re
         let (skeleton, listed) = assemble::assemble::<u64>(chunks, &meter);
         finish(skeleton, &listed, &meter)
     };
+    let (attributes, differing) = match &arrays {
+        Arrays::Narrow(arrays) => listed.by_id(arrays, &order, options),
+        Arrays::Wide(arrays) => listed.by_id(arrays, &order, options),
+    }?;
     let report = BuildReport {
         listed: num_listed,
         repeated: num_listed - counts.distinct_listed,
+        differing,
         non_maximal: counts.non_maximal,
         conflicting: counts.conflicting,
         unused_kept: if keep_unused { order.num_unused } else { 0 },
         unused_dropped: if keep_unused || !declared { 0 } else { order.num_unused },
+        first_unused: order.name_unused(&labels, declared),
         top_simplices: counts.top_simplices,
     };
     let (labels, coordinates) = order.permute(labels, coordinates);
-    Ok(Built { arrays, labels, coordinates, parity: Some(parity), filtration: None, report })
+    Ok(Built { arrays, labels, coordinates, parity: Some(parity), filtration: None, attributes, report })
 }
 
 /// A number that is known to fit: the caller has checked, or counts what is stored 32 bits wide already.

@@ -19,9 +19,19 @@ pub(crate) struct Order {
     inputs: Vec<u32>,
     /// Vertices of the input that no simplex uses, in the complex or not.
     pub(crate) num_unused: usize,
+    /// The first of them.
+    unused: Vec<u32>,
 }
 
 impl Order {
+    /// How many unused vertices are named.
+    const MOST_NAMED: usize = 8;
+
+    /// The labels of the first unused vertices of a mesh.
+    pub(crate) fn name_unused(&self, labels: &Labels, declared: bool) -> Vec<String> {
+        self.unused.iter().filter(|_| declared).map(|&vertex| labels.name(vertex)).collect()
+    }
+
     /// The number of vertices in the complex.
     pub(crate) fn num_vertices(&self) -> usize {
         self.inputs.len()
@@ -35,6 +45,11 @@ impl Order {
     /// The vertex number of the vertex with id `id`.
     pub(crate) fn input(&self, id: u32) -> u32 {
         self.inputs[id as usize]
+    }
+
+    /// The vertex number of each id.
+    pub(crate) fn inputs(&self) -> &[u32] {
+        &self.inputs
     }
 
     /// The labels and coordinates of the vertices of the complex, by id.
@@ -121,7 +136,8 @@ pub(crate) fn number_vertices(
         }
     }
     let ids = invert(&inputs, used.len());
-    Ok(Order { ids, inputs, num_unused: used.iter().filter(|&&used| !used).count() })
+    let unused = (0..).zip(used).filter(|(_, used)| !**used).map(|(input, _)| input).take(Order::MOST_NAMED).collect();
+    Ok(Order { ids, inputs, num_unused: used.iter().filter(|&&used| !used).count(), unused })
 }
 
 /// The id of each of `count` vertex numbers, given the vertex number of each id.

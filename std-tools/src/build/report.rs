@@ -21,6 +21,8 @@ pub struct BuildReport {
     pub listed: usize,
     /// Of these, repetitions of one listed before; merged.
     pub repeated: usize,
+    /// Of the repetitions, those with other attributes than the first, whose attributes stay.
+    pub differing: usize,
     /// Different simplices that the input lists along with a coface.
     pub non_maximal: usize,
     /// Top simplices that the input lists in both orientations; their parity is 0.
@@ -29,6 +31,8 @@ pub struct BuildReport {
     pub unused_kept: usize,
     /// Declared vertices that no listed simplex uses, dropped.
     pub unused_dropped: usize,
+    /// The labels of the first of the unused vertices.
+    pub first_unused: Vec<String>,
     /// Top simplices, of each dimension.
     pub top_simplices: Vec<usize>,
 }
@@ -38,6 +42,7 @@ impl fmt::Display for BuildReport {
         write!(f, "{} simplices listed", self.listed)?;
         let counts = [
             (self.repeated, "repeated (merged)"),
+            (self.differing, "repeated with other attributes (the first stay)"),
             (self.non_maximal, "given along with a coface (merged)"),
             (self.conflicting, "given in both orientations (parity 0)"),
             (self.unused_kept, "unused vertices kept"),

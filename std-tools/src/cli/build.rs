@@ -1,5 +1,6 @@
 //! `sig build`: meshes and lists of simplices become a complex in a file.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -7,10 +8,12 @@ use anyhow::Context;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
+use sig_core::format::Column;
 use sig_core::{Index, IndexWidth, SimplexId};
+use sig_tools::attribute;
 use sig_tools::build::external::{Resources, build_to_file};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
-use sig_tools::io::{self as readers, Compression, Format, MergeReport, ReadOptions, ReadReport, Weld};
+use sig_tools::io::{self as readers, Compression, Format, MergeReport, OnBad, ReadOptions, ReadReport, Weld};
 use sig_tools::names::simplex_name;
 use sig_tools::soup::Soup;
 use sig_tools::spool::Spill;
@@ -105,6 +108,15 @@ pub(super) struct Cleaning {
     #[arg(long)]
     drop_degenerate: bool,
 
+    /// What becomes of cells that repeat a vertex or name one that is not there, and of vertices whose coordinates are not
+    /// finite: refuse the input, or drop them and the cells at such vertices, and name the first
+    #[arg(long, value_name = "refuse|drop", value_parser = bad_parser(), default_value = "refuse", hide_possible_values = true)]
+    on_bad: OnBad,
+
+    /// Leave out the attributes of vertices and cells: point and cell data, properties, references, groups
+    #[arg(long)]
+    drop_attributes: bool,
+
     /// Which vertices become one: none, those at one place (exact), or those at most DISTANCE apart; by default the corners
     /// of STL's triangles at one place
     #[arg(long, value_name = "none|exact|DISTANCE")]
@@ -114,7 +126,14 @@ pub(super) struct Cleaning {
 impl Cleaning {
     /// How to read an input of the given format.
     pub(super) fn options(&self, format: Option<Format>) -> ReadOptions<'static> {
-        ReadOptions { format, drop_degenerate: self.drop_degenerate, weld: self.weld, ..ReadOptions::default() }
+        ReadOptions {
+            format,
+            drop_degenerate: self.drop_degenerate,
+            on_bad: self.on_bad,
+            drop_attributes: self.drop_attributes,
+            weld: self.weld,
+            ..ReadOptions::default()
+        }
     }
 }
 
@@ -129,6 +148,10 @@ enum Order {
     Hilbert,
     /// By the reverse Cuthill–McKee order of the edges
     Rcm,
+}
+
+fn bad_parser() -> impl TypedValueParser<Value = OnBad> {
+    PossibleValuesParser::new(["refuse", "drop"]).map(|word| if word == "drop" { OnBad::Drop } else { OnBad::Refuse })
 }
 
 fn width_parser() -> impl TypedValueParser<Value = IndexWidth> {
@@ -170,10 +193,14 @@ impl Args {
             Arrays::Narrow(arrays) => counts(arrays),
             Arrays::Wide(arrays) => counts(arrays),
         };
+        let attributes = built.attributes.iter().map(|attribute::Attribute { name, dim, components, values }| {
+            Attribute::new(name, *dim, *components, &values.column())
+        });
         Ok(Report {
             output: path.display().to_string(),
             file_bytes: encoding.file_bytes()?,
             index_bits: encoding.width().bits(),
+            attributes: attributes.collect(),
             ..Report::new(simplices, &built.report, inputs, &merged)
         })
     }
@@ -280,9 +307,50 @@ struct Report {
     conflicting_orientations: usize,
     unused_vertices_kept: usize,
     unused_vertices_dropped: usize,
+    /// The labels of the first of them.
+    first_unused_vertices: Vec<String>,
+    attributes: Vec<Attribute>,
+    /// The names of those that inputs have in different shapes.
+    attributes_left_out: Vec<String>,
+    repeated_with_other_attributes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     out_of_core: Option<OutOfCore>,
     seconds: f64,
+}
+
+/// An attribute that is kept.
+#[derive(Serialize)]
+pub(super) struct Attribute {
+    name: String,
+    dimension: usize,
+    #[serde(rename = "type")]
+    scalar: &'static str,
+    components: usize,
+}
+
+impl Attribute {
+    pub(super) fn new(name: &str, dimension: usize, components: usize, column: &Column<'_>) -> Self {
+        Self { name: name.to_owned(), dimension, scalar: attribute::type_name(column), components }
+    }
+
+    /// Lists some, by dimension: `attributes, dimension 0` and `red u8, normal 3 × f32`.
+    pub(super) fn list(attributes: &[Self]) -> impl Iterator<Item = (String, String)> {
+        let of_dim = |attributes: &[Self]| {
+            let names: Vec<_> = attributes.iter().map(ToString::to_string).collect();
+            let dim = attributes.first().map_or(0, |first| first.dimension);
+            (format!("attributes, dimension {dim}"), names.join(", "))
+        };
+        attributes.chunk_by(|a, b| a.dimension == b.dimension).map(of_dim)
+    }
+}
+
+impl fmt::Display for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.components {
+            1 => write!(f, "{} {}", self.name, self.scalar),
+            many => write!(f, "{} {many} × {}", self.name, self.scalar),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -311,7 +379,12 @@ pub(super) struct Input {
     polyhedra: usize,
     split_into: usize,
     degenerate_dropped: usize,
+    bad_cells_dropped: usize,
+    bad_vertices_dropped: usize,
+    /// The first that were dropped.
+    bad: Vec<String>,
     welded: usize,
+    welded_with_other_attributes: usize,
     inner_nodes_dropped: usize,
     ignored: u64,
     ignored_names: Vec<String>,
@@ -326,8 +399,8 @@ struct Renumbered {
 
 impl Input {
     pub(super) fn new(path: &Path, report: ReadReport) -> Self {
+        let file = if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() };
         Self {
-            file: if output::is_stdout(path) { "<stdin>".to_owned() } else { path.display().to_string() },
             format: report.format.name(),
             compression: report.compression.map(Compression::name),
             vertices: report.vertices,
@@ -336,10 +409,15 @@ impl Input {
             polyhedra: report.polyhedra,
             split_into: report.split_into,
             degenerate_dropped: report.degenerate_dropped,
+            bad_cells_dropped: report.bad_cells_dropped,
+            bad_vertices_dropped: report.bad_vertices_dropped,
+            bad: report.bad.into_iter().map(|what| format!("{file}{what}")).collect(),
             welded: report.welded,
+            welded_with_other_attributes: report.welded_differing,
             inner_nodes_dropped: report.inner_nodes_dropped,
             ignored: report.ignored.count,
             ignored_names: report.ignored.names,
+            file,
         }
     }
 
@@ -354,7 +432,11 @@ impl Input {
         let split = format!("polygons and polyhedra, split into {} simplices", grouped(self.split_into));
         note(self.polygons + self.polyhedra, &split);
         note(self.degenerate_dropped, "simplices dropped that repeat a vertex");
+        note(self.bad_vertices_dropped, "vertices dropped whose coordinates are not finite");
+        note(self.bad_cells_dropped, "cells dropped at vertices that are not there or were dropped");
+        self.bad.iter().for_each(|what| output::log(format_args!("         {what}")));
         note(self.welded, "corners or vertices welded to one at the same place or near");
+        note(self.welded_with_other_attributes, "of them with other attributes than the one that stays");
         note(self.inner_nodes_dropped, "nodes dropped that lie inside elements of higher order");
         if self.ignored > 0 {
             output::log(format_args!(
@@ -385,6 +467,9 @@ impl Report {
             conflicting_orientations: conflicting,
             unused_vertices_kept: unused_kept,
             unused_vertices_dropped: unused_dropped,
+            first_unused_vertices: report.first_unused.clone(),
+            repeated_with_other_attributes: report.differing,
+            attributes_left_out: merged.attributes_left_out.iter().map(ToString::to_string).collect(),
             ..Self::default()
         }
     }
@@ -398,10 +483,19 @@ impl Report {
         }
         output::log(format_args!("built  dimension {}, {}", self.dimension, output::counted(&self.simplices)));
         note(self.repeated, "simplices merged that repeat another");
+        note(self.repeated_with_other_attributes, "of them with other attributes than the first, which stay");
         note(self.non_maximal, "simplices merged that are faces of others");
         note(self.conflicting_orientations, "top simplices without orientation, for they were given in both");
-        note(self.unused_vertices_kept, "unused vertices kept (--drop-unused drops them)");
-        note(self.unused_vertices_dropped, "unused vertices dropped");
+        let unused = first(self.unused_vertices_kept + self.unused_vertices_dropped, &self.first_unused_vertices);
+        note(self.unused_vertices_kept, &format!("unused vertices kept (--drop-unused drops them){unused}"));
+        note(self.unused_vertices_dropped, &format!("unused vertices dropped{unused}"));
+        for (title, names) in Attribute::list(&self.attributes) {
+            output::log(format_args!("       {title}: {names}"));
+        }
+        if !self.attributes_left_out.is_empty() {
+            let names = self.attributes_left_out.join(", ");
+            output::log(format_args!("       attributes left out, as inputs have them in different shapes: {names}"));
+        }
         if let Some(OutOfCore { pieces, temporary_bytes, peak_bytes }) = &self.out_of_core {
             let (pieces, bytes) = (grouped(pieces), grouped(temporary_bytes));
             let peak = peak_bytes.map_or(String::new(), |peak| format!(", {} bytes of memory", grouped(peak)));
@@ -415,6 +509,12 @@ impl Report {
 /// The number of simplices of each dimension.
 fn counts<I: Index>(arrays: &SigArrays<I>) -> Vec<usize> {
     (0..arrays.first.len()).map(|dim| arrays.ids(dim).len()).collect()
+}
+
+/// The names of the first of `count` things.
+fn first(count: usize, names: &[String]) -> String {
+    let more = if count > names.len() { " …" } else { "" };
+    if names.is_empty() { String::new() } else { format!(": {}{more}", names.join(" ")) }
 }
 
 /// A line on something that happened so often, if it did.

@@ -87,6 +87,7 @@ impl Args {
                 }
                 let skeleton = with_view!(input.view(), complex => {
                     let graph = Graph::of(&complex).with_context(|| format!("{name}: damaged; see sig verify"))?;
+                    tree_input::say_without_attributes(&complex, &name);
                     Skeleton { graph, labels: Labels::of(&complex), coordinates: Coordinates::of(&complex) }
                 });
                 return Ok((skeleton, "sigc"));

@@ -66,6 +66,13 @@ fn rows() -> Vec<Row> {
     read.chain(written).chain(spaces).collect()
 }
 
+const REMARKS: &str = "\
+Input may be compressed by gzip, xz or zstd, or come from standard input. Polygons and polyhedra are
+split into simplices, of which each has the attributes of the cell, and cells of higher order stand
+for their corners. Attributes, numbers at vertices and cells, are read of vtk, vtu, ply, msh, medit
+and mfem: data, properties, and as the attribute ref the integer that some have for each cell or
+vertex, like physical groups. A complex keeps them; a conversion says which it cannot.";
+
 impl Args {
     pub(super) fn run(self) -> anyhow::Result<()> {
         let rows = rows();
@@ -92,15 +99,7 @@ impl Args {
                 }
                 writeln!(out)?;
             }
-            writeln!(
-                out,
-                "Input may be compressed by gzip, xz or zstd, or come from standard input. Polygons and polyhedra are"
-            )?;
-            writeln!(
-                out,
-                "split into simplices, cells of higher order stand for their corners, and data at points and cells"
-            )?;
-            writeln!(out, "are not kept.")
+            writeln!(out, "{REMARKS}")
         })?;
         Ok(())
     }

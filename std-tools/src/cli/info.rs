@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use serde::Serialize;
 use sig_core::complex::columns::Labels;
-use sig_core::format::{Column, Container, SectionKind};
+use sig_core::format::{self, Column, Container, SectionKind};
 use sig_core::storage::{ClusterCounts, FileStorage, PaperStorage};
 use sig_core::{Complex, Dim, Index, Relations, with_complex, with_tree};
 use sig_tools::analysis::{Analysis, num_top_simplices};
@@ -14,6 +14,7 @@ use sig_tools::store::Access;
 use sig_tools::store::atomic::Existing;
 use sig_tools::{View, with_view};
 
+use super::build::Attribute;
 use super::draw::whole;
 use super::input::{How, Input};
 use super::output::{self, grouped, table};
@@ -112,6 +113,8 @@ struct Summary {
     storage: Option<Storage>,
     labels: &'static str,
     coordinates: Option<Coordinates>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    attributes: Vec<Attribute>,
     /// The least and the largest filtration value.
     filtration: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -276,6 +279,13 @@ impl Summary {
                 components: section.components,
                 bits: if matches!(section.column, Column::F32(_)) { 32 } else { 64 },
             }),
+            attributes: container
+                .sections()
+                .filter(|section| section.kind == SectionKind::Attribute)
+                .filter_map(|format::Section { name, dim, components, column, .. }| {
+                    Some(Attribute::new(name, dim?, components as usize, &column))
+                })
+                .collect(),
             filtration: complex.filtration().filter(|values| !values.is_empty()).map(range),
             provenance: container
                 .section(SectionKind::Provenance)
@@ -395,6 +405,7 @@ impl Summary {
         }
         rows.push(vec!["vertex labels".to_owned(), self.labels.to_owned()]);
         rows.push(vec!["coordinates".to_owned(), coordinates]);
+        rows.extend(Attribute::list(&self.attributes).map(|(title, names)| vec![title, names]));
         let filtration = self.filtration.map(|[least, most]| format!("{least} to {most}"));
         rows.push(vec!["filtration values".to_owned(), filtration.unwrap_or("none".to_owned())]);
         if let Some(provenance) = &self.provenance {

@@ -260,6 +260,7 @@ fn read(path: &Path, how: &How) -> anyhow::Result<Input> {
     match tree_input::open(path, how)? {
         Opened::Ours(input) => with_view!(input.view(), complex => {
             complex.validate().with_context(|| format!("{}: damaged; see sig verify", path.display()))?;
+            tree_input::say_without_attributes(&complex, &tree_input::displayed(path));
             #[expect(clippy::cast_possible_truncation, reason = "costs are single precision")]
             let filtration =
                 Relations::filtration(&complex).map(|values| values.iter().map(|&value| value as f32).collect());

@@ -163,6 +163,7 @@ fn frozen(file: &Path, how: &How) -> anyhow::Result<FrozenTree> {
     let name = || tree_input::displayed(file);
     with_view!(input.view(), complex => {
         complex.validate().with_context(|| format!("{}: damaged; see sig verify", name()))?;
+        tree_input::say_without_attributes(&complex, &name());
         FrozenTree::of(&complex).with_context(|| format!("{}: more than {MAX_SIMPLICES} simplices", name()))
     })
 }

@@ -1,11 +1,13 @@
 //! Reading any complex as a simplex tree: a file of this program, or GUDHI's text.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use anyhow::Context;
-use sig_core::format::MAGIC;
+use sig_core::Relations;
+use sig_core::format::{MAGIC, SectionKind};
 use sig_tools::simplex_tree::{SimplexTree, Vertices};
 use sig_tools::store::Access;
 use sig_tools::{Loaded, with_view};
@@ -69,9 +71,20 @@ fn is_ours(head: &[u8]) -> bool {
     !head.is_empty() && MAGIC.starts_with(&head[..head.len().min(MAGIC.len())])
 }
 
+/// Says on standard error that the attributes of a complex are not in what will be written.
+pub(super) fn say_without_attributes(complex: &impl Relations, name: &str) {
+    let attributes = complex.container().sections().filter(|section| section.kind == SectionKind::Attribute);
+    let names: BTreeSet<&str> = attributes.map(|section| section.name).collect();
+    if !names.is_empty() {
+        let names = names.into_iter().collect::<Vec<_>>().join(", ");
+        output::log(format_args!("sig: note: {name}: attributes are left out: {names}"));
+    }
+}
+
 fn thaw(input: &Input, name: &str) -> anyhow::Result<(SimplexTree, Vertices)> {
     with_view!(input.view(), complex => {
         complex.validate().with_context(|| format!("{name}: damaged; see sig verify"))?;
+        say_without_attributes(&complex, name);
         SimplexTree::thaw_complex(&complex).with_context(|| name.to_owned())
     })
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use sig_core::complex::columns::{Label, Labels};
 use sig_core::format::{Column, Section, SectionKind};
-use sig_core::{Dim, Relations, VertexId};
+use sig_core::{Dim, Relations, SimplexId, VertexId};
 
 use crate::tops::top_simplices;
 
@@ -128,6 +128,14 @@ impl<'v, V: Relations> Mesh<'v, V> {
             cell(&places)?;
         }
         Ok(())
+    }
+
+    /// The top simplices of a dimension in `dims`, in the order of [`cells`](Self::cells): dimension and number in it.
+    pub(super) fn rows(&self, dims: std::ops::RangeInclusive<Dim>) -> impl Iterator<Item = (Dim, usize)> {
+        let first = |dim| self.complex.simplices_of_dim(dim).next().map_or(0, SimplexId::index);
+        let first: Vec<usize> = (0..=self.dim()).map(first).collect();
+        let tops = top_simplices(self.complex).filter(move |top| dims.contains(&top.dim));
+        tops.map(move |top| (top.dim, top.id.index() - first.get(top.dim).copied().unwrap_or(0)))
     }
 
     /// The number of top simplices of each of the dimensions 0 to 3.

@@ -4,6 +4,7 @@
 //! though the simplices are all there (labels, coordinates) it reports as a [`Note`]. Orientations are those of the
 //! input.
 
+mod attributes;
 mod chains;
 mod gltf;
 mod gudhi;
@@ -28,8 +29,11 @@ pub(crate) mod vtu;
 use std::fmt;
 use std::io::{self, Write};
 
+use sig_core::format::SectionKind;
 use sig_core::{Dim, Relations};
 
+use crate::attribute::Attribute;
+use attributes::Losses;
 pub use chains::{NamedChain, check_chains, export_chains};
 use mesh::Mesh;
 
@@ -165,16 +169,21 @@ impl Format {
     #[must_use]
     pub const fn loses(self) -> &'static str {
         match self {
-            Self::Off | Self::Obj | Self::Ply | Self::Vtk | Self::Medit | Self::Mfem | Self::Tetgen | Self::Tops => {
-                "labels"
+            Self::Off | Self::Obj | Self::Tetgen | Self::Tops => "labels, attributes",
+            Self::Tetbin => "labels, attributes, precision beyond 32 bits",
+            Self::Vtp => "labels but integers, attributes",
+            Self::Ply => "labels, 64-bit integers",
+            Self::Vtk => "labels",
+            Self::Medit => "labels, attributes but the integer ref",
+            Self::Mfem => "labels, attributes but the integer ref of elements, from 1",
+            Self::Stl => "labels, attributes, precision beyond 32 bits, vertices that share a place",
+            Self::Msh => {
+                "labels but integers from 1, types of attributes but that of ref of elements: others are doubles"
             }
-            Self::Tetbin => "labels, precision beyond 32 bits",
-            Self::Stl => "labels, precision beyond 32 bits, vertices that share a place",
-            Self::Msh => "labels but integers from 1",
-            Self::Vtu | Self::Vtp => "labels but integers",
-            Self::Gltf => "labels, precision beyond 32 bits, what lies inside of solids",
-            Self::SimplexList => "coordinates",
-            Self::Gudhi => "coordinates, labels but numbers",
+            Self::Vtu => "labels but integers",
+            Self::Gltf => "labels, attributes, precision beyond 32 bits, what lies inside of solids",
+            Self::SimplexList => "coordinates, attributes",
+            Self::Gudhi => "coordinates, attributes, labels but numbers",
         }
     }
 
@@ -277,7 +286,7 @@ pub enum ExportError {
 }
 
 /// What an export leaves out or changes, all top simplices being there.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum Note {
     /// The vertices are numbered anew, in the order of their labels, which the format cannot hold.
@@ -290,6 +299,12 @@ pub enum Note {
     CoordinatesRounded,
     /// Of tetrahedra there is the surface alone.
     InsideLeftOut,
+    /// The attributes with these names have no place in the format.
+    AttributesLeftOut(Vec<String>),
+    /// The attributes with these names have another type, more components or another name.
+    AttributesConverted(Vec<String>),
+    /// Values of these attributes are at simplices that are faces of others, which are not written.
+    AttributesOfFacesLeftOut(Vec<String>),
     /// The vertices are called by their numbers in the file, as the format has no labels but numbers.
     VerticesNumbered,
 }
@@ -297,6 +312,24 @@ pub enum Note {
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::AttributesLeftOut(names) => {
+                return write!(
+                    f,
+                    "attributes are left out, for the format has no place for them: {}",
+                    names.join(", ")
+                );
+            }
+            Self::AttributesConverted(names) => {
+                let names = names.join(", ");
+                return write!(
+                    f,
+                    "attributes are converted to the types, widths and names that the format has: {names}"
+                );
+            }
+            Self::AttributesOfFacesLeftOut(names) => {
+                let names = names.join(", ");
+                return write!(f, "attributes of simplices that are faces of others are left out with them: {names}");
+            }
             Self::LabelsLeftOut => {
                 "vertices are numbered anew in the order of their labels, which the format cannot hold"
             }
@@ -370,30 +403,33 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
     if format == Format::SimplexList {
         simplex_list::write(complex, out)?;
         notes.extend(complex.coordinates().map(|_| Note::CoordinatesLeftOut));
+        notes.extend(without_attributes(complex));
         return Ok(notes);
     }
     if format == Format::Gudhi {
         gudhi::write(complex, out)?;
         notes.extend((!gudhi::keeps_labels(complex)).then_some(Note::VerticesNumbered));
         notes.extend(complex.coordinates().map(|_| Note::CoordinatesLeftOut));
+        notes.extend(without_attributes(complex));
         return Ok(notes);
     }
     let mesh = Mesh::new(complex);
+    let mut losses = None;
     let keeps_labels = match format {
         Format::Off => off::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Obj => obj::write(&mesh, out).map(|()| mesh.is_numbered_from(1)),
-        Format::Ply => ply::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Ply => ply::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.is_numbered_from(0)),
         Format::Stl => stl::write(&mesh, out).map(|()| false),
-        Format::Msh => msh::write(&mesh, out).map(|()| msh::tags(&mesh).is_some()),
-        Format::Vtk => vtk::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
-        Format::Medit => medit::write(&mesh, out).map(|()| mesh.is_numbered_from(1)),
-        Format::Mfem => mfem::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
+        Format::Msh => msh::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| msh::tags(&mesh).is_some()),
+        Format::Vtk => vtk::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.is_numbered_from(0)),
+        Format::Medit => medit::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.is_numbered_from(1)),
+        Format::Mfem => mfem::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.is_numbered_from(0)),
         Format::Gltf => gltf::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Tops => tops::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Vtp => vtp::write(&mesh, out).map(|()| mesh.integer_labels().is_some()),
         Format::Tetbin => tetbin::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Vtu | Format::Tetgen | Format::SimplexList | Format::Gudhi => {
-            vtu::write(&mesh, out).map(|()| mesh.integer_labels().is_some())
+            vtu::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.integer_labels().is_some())
         }
     }?;
     notes.extend((!keeps_labels).then_some(Note::LabelsLeftOut));
@@ -403,6 +439,14 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
     let is_single = matches!(format, Format::Stl | Format::Tetbin | Format::Gltf);
     notes.extend((is_single && !mesh.is_single()).then_some(Note::CoordinatesRounded));
     notes.extend((format == Format::Gltf && complex.dim() == Some(3)).then_some(Note::InsideLeftOut));
+    match losses {
+        None => notes.extend(without_attributes(complex)),
+        Some(Losses { left_out, converted }) => {
+            notes.extend(named(left_out).map(Note::AttributesLeftOut));
+            notes.extend(named(converted).map(Note::AttributesConverted));
+            notes.extend(named(of_faces(complex)).map(Note::AttributesOfFacesLeftOut));
+        }
+    }
     Ok(notes)
 }
 
@@ -431,5 +475,31 @@ pub fn export_file(
     check(complex, format)?;
     let mesh = Mesh::new(complex);
     tetgen::write(&mesh, file, out)?;
-    Ok(if mesh.is_numbered_from(0) { Vec::new() } else { vec![Note::LabelsLeftOut] })
+    let labels = (!mesh.is_numbered_from(0)).then_some(Note::LabelsLeftOut);
+    Ok(labels.into_iter().chain(without_attributes(complex)).collect())
+}
+
+/// Names, each once, in order; `None` if there is none.
+fn named(names: Vec<impl Into<String>>) -> Option<Vec<String>> {
+    let mut names: Vec<String> = names.into_iter().map(Into::into).collect();
+    names.sort_unstable();
+    names.dedup();
+    (!names.is_empty()).then_some(names)
+}
+
+/// That the attributes of a complex are not written.
+fn without_attributes(complex: &impl Relations) -> Option<Note> {
+    let sections = complex.container().sections().filter(|section| section.kind == SectionKind::Attribute);
+    named(sections.map(|section| section.name).collect()).map(Note::AttributesLeftOut)
+}
+
+/// The attributes with values at simplices that are faces of others.
+fn of_faces(complex: &impl Relations) -> Vec<String> {
+    let is_below = |attribute: &Attribute| attribute.dim > 0 && complex.dim().is_some_and(|dim| attribute.dim < dim);
+    let attributes = Attribute::all_of(complex).into_iter().filter(is_below);
+    let has_faces = attributes.filter(|attribute| {
+        let simplices = complex.simplices_of_dim(attribute.dim).enumerate();
+        simplices.into_iter().any(|(row, simplex)| attribute.has_value(row) && !complex.is_top(simplex))
+    });
+    has_faces.map(|attribute| format!("{} (dimension {})", attribute.name, attribute.dim)).collect()
 }

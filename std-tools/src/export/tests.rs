@@ -1,5 +1,7 @@
 //! What is exported is read and built again: the same complex must come out.
 
+mod attributes;
+
 use sig_core::{AnyComplex, with_complex};
 
 use super::*;

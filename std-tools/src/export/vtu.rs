@@ -1,19 +1,23 @@
 //! VTK's XML format for unstructured grids: cells of all dimensions in one grid, arrays inline in base64.
 //!
-//! Cells carry their dimension, points their label where labels are integers, so that both can be shown and selected.
+//! Cells carry their dimension, points their label where labels are integers, so that both can be shown and selected, and
+//! both their attributes.
 
 use std::io::{self, Write};
 
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use sig_core::Relations;
+use sig_core::format::Column;
 
+use super::attributes::{Attribute, Losses};
 use super::mesh::Mesh;
 
 /// VTK's cell types of a vertex, a line, a triangle and a tetrahedron.
 pub(crate) const CELL_TYPES: [u8; 4] = [1, 3, 5, 10];
 
-pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write<'v, V: Relations>(mesh: &Mesh<'v, V>, out: &mut dyn Write) -> io::Result<Losses<'v>> {
+    let (mut vertices, cells, mut left_out) = Attribute::all(mesh.complex, 3);
     let counts = mesh.num_cells();
     let num_cells: usize = counts.iter().sum();
     let num_corners: usize = counts.iter().enumerate().map(|(dim, count)| (dim + 1) * count).sum();
@@ -21,11 +25,40 @@ pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io
     writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
     writeln!(out, "<UnstructuredGrid>")?;
     writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{num_cells}">"#, mesh.num_vertices())?;
-    labels(mesh, out)?;
+    let labels = mesh.integer_labels();
+    if labels.is_some() {
+        // The labels have the name.
+        left_out.extend(vertices.extract_if(.., |attribute| attribute.name == LABEL).map(|attribute| attribute.name));
+    }
+    let has_points = labels.is_some() || !vertices.is_empty();
+    if has_points {
+        writeln!(out, "<PointData{}>", labels.as_ref().map_or("", |_| r#" Scalars="label""#))?;
+    }
+    if let Some(labels) = labels {
+        array(out, r#"type="UInt64" Name="label""#, mesh.num_vertices() * 8, |data| {
+            labels.into_iter().try_for_each(|label| data.write_all(&label.to_le_bytes()))
+        })?;
+    }
+    for attribute in &vertices {
+        let bytes = attribute.row_bytes() * mesh.num_vertices();
+        array(out, &described(attribute), bytes, |data| {
+            mesh.vertices().try_for_each(|vertex| attribute.write_binary(0, vertex.index(), data))
+        })?;
+    }
+    if has_points {
+        writeln!(out, "</PointData>")?;
+    }
     writeln!(out, r#"<CellData Scalars="dimension">"#)?;
-    array(out, r#"type="UInt8" Name="dimension""#, num_cells, |data| {
-        mesh.cells(0..=3, |cell| data.write_all(&[to_u8(cell.len() - 1)]))
-    })?;
+    if cells.iter().all(|attribute| attribute.name != DIMENSION) {
+        array(out, r#"type="UInt8" Name="dimension""#, num_cells, |data| {
+            mesh.cells(0..=3, |cell| data.write_all(&[to_u8(cell.len() - 1)]))
+        })?;
+    }
+    for attribute in &cells {
+        array(out, &described(attribute), attribute.row_bytes() * num_cells, |data| {
+            mesh.rows(0..=3).try_for_each(|(dim, row)| attribute.write_binary(dim, row, data))
+        })?;
+    }
     writeln!(out, "</CellData>\n<Points>")?;
     points(mesh, out)?;
     writeln!(out, "</Points>\n<Cells>")?;
@@ -42,7 +75,28 @@ pub(super) fn write<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io
     array(out, r#"type="UInt8" Name="types""#, num_cells, |data| {
         mesh.cells(0..=3, |cell| data.write_all(&[CELL_TYPES[cell.len() - 1]]))
     })?;
-    writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
+    writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
+    Ok(Losses { left_out, ..Losses::default() })
+}
+
+/// The names of the arrays that are there without attributes.
+const LABEL: &str = "label";
+const DIMENSION: &str = "dimension";
+
+/// What the tag of the array of an attribute says.
+fn described(attribute: &Attribute<'_>) -> String {
+    let scalar = match attribute.column() {
+        Column::Bits { .. } | Column::U8(_) => "UInt8",
+        Column::U16(_) => "UInt16",
+        Column::U32(_) => "UInt32",
+        Column::U64(_) => "UInt64",
+        Column::I32(_) => "Int32",
+        Column::I64(_) => "Int64",
+        Column::F32(_) => "Float32",
+        Column::F64(_) => "Float64",
+    };
+    let name = attribute.name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    format!(r#"type="{scalar}" Name="{name}" NumberOfComponents="{}""#, attribute.components)
 }
 
 /// The labels, if they are integers, as data at the points.

@@ -226,7 +226,7 @@ fn coordinate(line: &Line<'_>, word: Word<'_>) -> Result<f64, Fault> {
     let text: Vec<u8> = word.bytes.iter().map(|&byte| if matches!(byte, b'd' | b'D') { b'e' } else { byte }).collect();
     let value =
         super::text::parse_float::<f64>(&text).ok_or_else(|| line.unexpected(word, "a coordinate of the node"))?;
-    if value.is_finite() {
+    if line.takes(value) {
         return Ok(value);
     }
     Err(line.fault(word.at, ErrorKind::NotFinite { found: excerpt(word.bytes) }))

@@ -227,6 +227,10 @@ impl Fault {
         self.0.0
     }
 
+    pub(super) fn kind(&self) -> &ErrorKind {
+        &self.0.1
+    }
+
     /// The fault with the line in which it is.
     pub(super) fn showing(mut self, line: Option<Excerpt>) -> Self {
         self.0.2 = line.map(Box::new);

@@ -1,8 +1,10 @@
-//! MEDIT's `.mesh` in text: sections of a keyword, a count and as many rows, each row closed by a reference number.
+//! MEDIT's `.mesh` in text: sections of a keyword, a count and as many rows, each row closed by a reference number:
+//! the attribute `ref` of vertices and cells.
 //!
 //! Cells of all dimensions are read, those of higher order by their corners. Vertices are numbered from 1. Sections of
 //! geometry (ridges, normals, required entities, …) are passed over. Binary files (`.meshb`) are not read.
 
+use super::attributes::References;
 use super::error::{ErrorKind, Fault};
 use super::intake::{Intake, reserve};
 use super::shape::Shape;
@@ -58,6 +60,9 @@ struct Mesh {
     values: Option<Vec<f64>>,
     vertices: u32,
     intake: Intake,
+    of_vertices: References,
+    of_cells: References,
+    num_cells: usize,
 }
 
 impl Mesh {
@@ -68,7 +73,7 @@ impl Mesh {
             for _ in 0..self.dim {
                 values.push(words.float("a coordinate of a vertex, as many vertices as the section says")?);
             }
-            words.integer::<i64>("the reference of the vertex, an integer")?;
+            self.of_vertices.push(words.integer("the reference of the vertex, an integer")?);
         }
         (self.values, self.vertices) = (Some(values), count);
         Ok(())
@@ -81,9 +86,12 @@ impl Mesh {
             words.first_byte()?;
             let position = words.source.end_of_text();
             for node in &mut nodes {
-                *node = words.vertex(1, self.vertices, "a vertex of a cell, as many cells as the section says")?;
+                let found = words.vertex(1, self.vertices, "a vertex of a cell, as many cells as the section says");
+                *node = found.or_else(|fault| self.intake.missing(fault))?;
             }
-            words.integer::<i64>("the reference of the cell, an integer")?;
+            self.of_cells.push(words.integer("the reference of the cell, an integer")?);
+            self.intake.attributes.begin_cell(self.num_cells);
+            self.num_cells += 1;
             let label = |vertex: u32| u64::from(vertex) + 1;
             self.intake.element(shape, &nodes, label).map_err(|refusal| {
                 let kind = refusal.kind(|vertex| label(vertex).to_string());
@@ -131,7 +139,9 @@ fn header(words: &mut Words<'_, '_>) -> Result<usize, Fault> {
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
     let mut words = Words::new(source, COMMENT);
     let dim = header(&mut words)?;
-    let mut mesh = Mesh { dim, values: None, vertices: 0, intake: Intake::new(Format::Medit, options) };
+    let intake = Intake::new(Format::Medit, options);
+    let [of_vertices, of_cells] = [References::new(0, &intake.attributes), References::new(0, &intake.attributes)];
+    let mut mesh = Mesh { dim, values: None, vertices: 0, intake, of_vertices, of_cells, num_cells: 0 };
     while let Some(mut line) = words.next()? {
         let word = line.need_word("a keyword")?;
         let cells = CELLS.iter().find(|(name, _)| *name == word.bytes);
@@ -156,5 +166,6 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
         return Err(Fault::new(position, ErrorKind::Truncated { expected: "the section Vertices".into() }));
     };
     let labels = Labels::Integers((1..=u64::from(mesh.vertices)).collect());
+    mesh.intake.references(mesh.of_vertices, mesh.of_cells);
     Ok(mesh.intake.finish(labels, true, Some((dim, Scalars::F64(values)))))
 }

@@ -3,7 +3,10 @@
 //! Lists of simplices speak of the same vertices where they use the same labels. Meshes number their vertices each for
 //! itself, so they are put beside each other.
 
+use sig_core::Dim;
+
 use super::labels::LabelTable;
+use crate::attribute::Attribute;
 use crate::soup::{Coordinates, Labels, Scalars, Soup};
 
 /// Why inputs cannot be merged. Inputs are numbered from 1 in the messages.
@@ -69,6 +72,8 @@ pub struct Renumbered {
 pub struct MergeReport {
     /// The meshes whose vertices were renamed.
     pub renumbered: Vec<Renumbered>,
+    /// The names of the attributes that are left out: of different types in different inputs, or of lists of simplices.
+    pub attributes_left_out: Vec<Box<str>>,
 }
 
 /// Merges inputs: lists of simplices by label, meshes beside each other with the labels of each past the greatest
@@ -89,7 +94,8 @@ pub fn merge(soups: Vec<Soup>) -> Result<(Soup, MergeReport), MergeError> {
     let mut table = LabelTable::new();
     if !merged.declared {
         // Into the table, so that later inputs find the labels.
-        let first = std::mem::replace(&mut merged, Soup::new(Labels::Numbered(0), false));
+        let mut first = std::mem::replace(&mut merged, Soup::new(Labels::Numbered(0), false));
+        report.attributes_left_out.extend(first.attributes.drain(..).map(|attribute| attribute.name));
         append_list(&mut merged, &mut table, first, 0)?;
     }
     for (input, mut soup) in inputs {
@@ -99,8 +105,11 @@ pub fn merge(soups: Vec<Soup>) -> Result<(Soup, MergeReport), MergeError> {
         if merged.declared {
             let coordinates = soup.coordinates.take();
             append_coordinates(&mut merged.coordinates, coordinates, input)?;
+            let left_out = append_attributes(&mut merged, &mut soup);
+            report.attributes_left_out.extend(left_out);
             report.renumbered.push(append_mesh(&mut merged, soup, input)?);
         } else {
+            report.attributes_left_out.extend(soup.attributes.drain(..).map(|attribute| attribute.name));
             append_list(&mut merged, &mut table, soup, input)?;
         }
     }
@@ -175,6 +184,35 @@ fn append_simplices(merged: &mut Soup, simplices: &[Vec<u32>], number: impl Fn(u
     for (all, more) in merged.simplices.iter_mut().zip(simplices) {
         all.extend(more.iter().map(|&vertex| number(vertex)));
     }
+}
+
+/// Appends the rows of the attributes of `more`, whose simplices will be appended, and rows without a value to those that it
+/// does not have. Leaves out those that have another shape there, and gives their names.
+fn append_attributes(merged: &mut Soup, more: &mut Soup) -> Vec<Box<str>> {
+    let rows = |soup: &Soup, dim: Dim| if dim == 0 { soup.labels.len() } else { soup.of_dim(dim).len() };
+    let mut left_out = Vec::new();
+    for attribute in std::mem::take(&mut more.attributes) {
+        let before = rows(merged, attribute.dim);
+        let same = |there: &&mut Attribute| (there.dim, &there.name) == (attribute.dim, &attribute.name);
+        match merged.attributes.iter_mut().find(same) {
+            None => {
+                let (none, its) = (std::iter::repeat_n(None, before), (0..attribute.num_rows()).map(Some));
+                merged.attributes.push(attribute.with_rows(none.chain(its)));
+            }
+            Some(there) if there.components == attribute.components && there.values.is_alike(&attribute.values) => {
+                there.values.append(attribute.values);
+            }
+            Some(there) => left_out.push(there.name.clone()),
+        }
+    }
+    merged.attributes.retain(|attribute| !left_out.contains(&attribute.name));
+    let dims: Vec<usize> = merged.attributes.iter().map(|attribute| attribute.dim).collect();
+    let all: Vec<usize> = dims.iter().map(|&dim| rows(merged, dim) + rows(more, dim)).collect();
+    for (attribute, rows) in merged.attributes.iter_mut().zip(all) {
+        attribute.values.fill(rows * attribute.components);
+    }
+    merged.attributes.sort_by(|a, b| (a.dim, &a.name).cmp(&(b.dim, &b.name)));
+    left_out
 }
 
 /// Appends coordinates, which must have as many scalars a vertex; the precision is the greater of the two.

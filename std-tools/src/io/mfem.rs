@@ -1,9 +1,11 @@
 //! MFEM's mesh format: `MFEM mesh v1.x`, then sections of dimension, elements, boundary and vertices.
 //!
-//! Elements of all kinds and the elements of the boundary are cells; vertices are numbered from 0. Where the mesh is
+//! Elements of all kinds and the elements of the boundary are cells, and the number that each begins with their attribute
+//! `ref`, unless it is the usual 1; vertices are numbered from 0. Where the mesh is
 //! curved or periodic, a section `nodes` holds points of the elements and the vertices have no coordinates of their own;
 //! that section is passed over. Meshes that do not conform, NURBS and inline meshes are not read.
 
+use super::attributes::References;
 use super::error::{ErrorKind, Fault, Position};
 use super::intake::{Intake, reserve};
 use super::shape::Shape;
@@ -35,6 +37,8 @@ fn shape(number: i64) -> Option<Shape> {
 /// A mesh as far as it is read.
 struct Mesh {
     intake: Intake,
+    references: References,
+    num_cells: usize,
     /// The greatest vertex number so far, and where; the number of vertices comes last.
     greatest: Option<(u32, Position)>,
     /// How many times an element names a vertex.
@@ -50,7 +54,10 @@ impl Mesh {
         let count: u64 = words.integer("the number of elements")?;
         let mut nodes = Vec::new();
         for _ in 0..count {
-            words.integer::<i64>("the attribute of an element, as many elements as the section says")?;
+            let attribute = words.integer("the attribute of an element, as many elements as the section says")?;
+            self.references.push(attribute);
+            self.intake.attributes.begin_cell(self.num_cells);
+            self.num_cells += 1;
             let mut line = words.need(GEOMETRY)?;
             let word = line.need_word(GEOMETRY)?;
             let position = line.position(word.at);
@@ -105,16 +112,19 @@ impl Mesh {
         Ok(())
     }
 
-    fn finish(self, end: Position) -> Result<(Soup, ReadReport), Fault> {
+    fn finish(mut self, end: Position) -> Result<(Soup, ReadReport), Fault> {
         let Some((count, coordinates)) = self.vertices else {
             return Err(Fault::new(end, ErrorKind::Truncated { expected: "the section vertices".into() }));
         };
         if let Some((vertex, position)) = self.greatest
             && vertex >= count
+            && !self.intake.drops_bad()
         {
             let kind = ErrorKind::OutOfRange { index: vertex.into(), vertices: count.into(), first: 0 };
             return Err(Fault::new(position, kind));
         }
+        let of_vertices = References::new(0, &self.intake.attributes);
+        self.intake.references(of_vertices, self.references);
         Ok(self.intake.finish(Labels::Numbered(count as usize), true, coordinates))
     }
 }
@@ -144,7 +154,9 @@ fn header(source: &mut Source<'_>) -> Result<(), Fault> {
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
     header(source)?;
     let mut words = Words::new(source, COMMENT);
-    let mut mesh = Mesh { intake: Intake::new(Format::Mfem, options), greatest: None, named: 0, vertices: None };
+    let intake = Intake::new(Format::Mfem, options);
+    let references = References::new(1, &intake.attributes);
+    let mut mesh = Mesh { intake, references, num_cells: 0, greatest: None, named: 0, vertices: None };
     while let Some(mut line) = words.next()? {
         let word = line.need_word("a section")?;
         match word.bytes {

@@ -8,6 +8,7 @@
 //! `io` knows files and soups; it knows nothing of complexes.
 
 mod abaqus;
+mod attributes;
 pub(crate) mod cells;
 mod compression;
 mod cone;
@@ -62,6 +63,17 @@ use crate::spool::Spill;
 use error::Fault;
 use source::Source;
 
+/// What becomes of cells and vertices that cannot be part of a complex.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum OnBad {
+    /// The input is refused.
+    #[default]
+    Refuse,
+    /// They are dropped and counted, and the first are named: cells that repeat a vertex or name one that is not there,
+    /// vertices whose coordinates are not finite, and the cells at these.
+    Drop,
+}
+
 /// How to read. Make one by `ReadOptions { format: Some(Format::Off), ..Default::default() }`.
 #[derive(Clone, Copy, Default)]
 pub struct ReadOptions<'a> {
@@ -69,6 +81,10 @@ pub struct ReadOptions<'a> {
     pub format: Option<Format>,
     /// Drop simplices that repeat a vertex, and count them, instead of refusing the input.
     pub drop_degenerate: bool,
+    /// What becomes of cells that name a vertex which is not there, and of vertices whose coordinates are not finite.
+    pub on_bad: OnBad,
+    /// Pass over the attributes of vertices and cells, which else are kept, or refused where they do not go into memory.
+    pub drop_attributes: bool,
     /// Where the simplices go instead of memory, for a complex larger than that; the soup then has none.
     pub spill: Option<&'a Spill>,
     /// Which vertices become one; by default the corners of STL's triangles with equal coordinates, and no others.
@@ -77,11 +93,20 @@ pub struct ReadOptions<'a> {
     pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
 }
 
+impl ReadOptions<'_> {
+    /// Whether simplices that repeat a vertex are dropped.
+    const fn drops_degenerate(&self) -> bool {
+        self.drop_degenerate || matches!(self.on_bad, OnBad::Drop)
+    }
+}
+
 impl fmt::Debug for ReadOptions<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ReadOptions")
             .field("format", &self.format)
             .field("drop_degenerate", &self.drop_degenerate)
+            .field("on_bad", &self.on_bad)
+            .field("drop_attributes", &self.drop_attributes)
             .field("spill", &self.spill.is_some())
             .field("weld", &self.weld)
             .field("progress", &self.progress.is_some())
@@ -153,7 +178,7 @@ fn read_sized(
     options: &ReadOptions<'_>,
 ) -> Result<(Soup, ReadReport), ReadError> {
     let run = || {
-        Source::new(reader, length, options.progress)?.reading(|source| {
+        Source::new(reader, length, options.progress)?.on_bad(options.on_bad).reading(|source| {
             let format = match options.format {
                 Some(format) => format,
                 None => detect::format(source, name)?,
@@ -187,14 +212,26 @@ fn read_as(format: Format, source: &mut Source<'_>, options: &ReadOptions<'_>) -
     }
 }
 
-/// Welds what was read, if so told.
+/// Refuses attributes that were read for the disk, and welds what was read, if so told.
 fn welded((mut soup, mut report): (Soup, ReadReport), options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
+    if !report.refused_attributes.is_empty() {
+        let message = format!(
+            "the attributes {} are kept in memory alone; --drop-attributes leaves them out",
+            report.refused_attributes.join(", ")
+        );
+        return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+    }
+    if options.spill.is_some() && options.on_bad == OnBad::Drop {
+        let message =
+            "bad cells and vertices are dropped in memory alone; convert the mesh first, or build without a limit";
+        return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
+    }
     if let Some(weld) = options.weld {
         if options.spill.is_some() && weld != Weld::None {
             let message = "vertices are welded in memory alone; convert the mesh first, or build without a limit";
             return Err(Fault::new(Position::Whole, ErrorKind::Unsupported(message.into())));
         }
-        weld::weld(&mut soup, &mut report, weld, options.drop_degenerate)?;
+        weld::weld(&mut soup, &mut report, weld, options.drops_degenerate())?;
     }
     Ok((soup, report))
 }

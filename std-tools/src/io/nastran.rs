@@ -149,7 +149,7 @@ fn card(card: &Card, mesh: &mut TaggedMesh, nodes: &mut Vec<(u64, Position)>) ->
             // A coordinate that is left out is 0.
             let Some((text, at)) = card.field(2 + axis) else { continue };
             *value = real(text).ok_or_else(|| unexpected(at, "a coordinate of the node", text))?;
-            if !value.is_finite() {
+            if !value.is_finite() && !mesh.intake.drops_bad() {
                 return Err(Fault::new(at, ErrorKind::NotFinite { found: excerpt(text) }));
             }
         }

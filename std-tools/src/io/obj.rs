@@ -87,7 +87,7 @@ impl Obj {
                 }
                 Ok(vertex)
             }
-            _ => Err(line.fault(word.at, out_of_range(index, self.vertices))),
+            _ => self.intake.missing(line.fault(word.at, out_of_range(index, self.vertices))),
         }
     }
 
@@ -141,6 +141,7 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
     }
     if let Some((vertex, position)) = obj.ahead
         && vertex >= obj.vertices
+        && !obj.intake.drops_bad()
     {
         return Err(Fault::new(position, out_of_range(i64::from(vertex) + 1, obj.vertices)));
     }

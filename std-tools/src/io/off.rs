@@ -152,7 +152,8 @@ fn face(mut line: Line<'_>, vertices: u32, word: &mut Vec<u32>, intake: &mut Int
         match u32::try_from(index) {
             Ok(vertex) if vertex < vertices => word.push(vertex),
             _ => {
-                return Err(line.fault(number.at, ErrorKind::OutOfRange { index, vertices: vertices.into(), first: 0 }));
+                let kind = ErrorKind::OutOfRange { index, vertices: vertices.into(), first: 0 };
+                word.push(intake.missing(line.fault(number.at, kind))?);
             }
         }
     }

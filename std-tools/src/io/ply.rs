@@ -1,13 +1,16 @@
 //! PLY, the polygon format of Stanford, in text and both binary byte orders.
 //!
 //! Read are the elements `vertex` (x, y and perhaps z), `face` (a list of vertices of any length), `edge` (vertex1,
-//! vertex2) and `tristrips`, in any order; other elements and properties are passed over and reported.
+//! vertex2) and `tristrips`, in any order. Other numbers of vertices, faces and edges are attributes: each property one, but
+//! `name_0`, `name_1`, … in a row and of one type are the components of the attribute `name`. Other elements and lists are
+//! passed over and reported.
 
 use super::error::{ErrorKind, Fault, Position};
 use super::intake::{Intake, Refusal};
 use super::source::Source;
-use super::text::{Line, parse_float};
-use super::{Format, ReadOptions, ReadReport};
+use super::text::{Line, parse_float, parse_number};
+use super::{Format, OnBad, ReadOptions, ReadReport};
+use crate::attribute::{Number, Values};
 use crate::soup::{Labels, Scalars, Soup};
 
 /// How the data after the header are written.
@@ -55,8 +58,33 @@ impl Type {
         }
     }
 
+    /// An empty column for values of the type; small integers with sign become wider.
+    const fn values(self) -> Values {
+        match self {
+            Self::U8 => Values::U8(Vec::new()),
+            Self::U16 => Values::U16(Vec::new()),
+            Self::U32 => Values::U32(Vec::new()),
+            Self::I8 | Self::I16 | Self::I32 => Values::I32(Vec::new()),
+            Self::F32 => Values::F32(Vec::new()),
+            Self::F64 => Values::F64(Vec::new()),
+        }
+    }
+
     fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// Whether an integer is one of the type, of integers.
+    fn holds(self, value: i64) -> bool {
+        match self {
+            Self::I8 => i8::try_from(value).is_ok(),
+            Self::U8 => u8::try_from(value).is_ok(),
+            Self::I16 => i16::try_from(value).is_ok(),
+            Self::U16 => u16::try_from(value).is_ok(),
+            Self::I32 => i32::try_from(value).is_ok(),
+            Self::U32 => u32::try_from(value).is_ok(),
+            Self::F32 | Self::F64 => false,
+        }
     }
 
     /// Whether every value is one of single precision.
@@ -95,6 +123,8 @@ struct Property {
     scalar: Type,
     /// Whether the reader looks at the values.
     used: bool,
+    /// Whether it is, or is a component of, an attribute that is kept.
+    is_attribute: bool,
 }
 
 struct Element {
@@ -209,7 +239,7 @@ fn property(line: &mut Line<'_>) -> Result<Property, Fault> {
     }
     let scalar = Type::from_name(word.bytes).ok_or_else(|| line.unexpected(word, EXPECTED))?;
     let name = line.need_word("the name of the property")?.bytes.into();
-    Ok(Property { name, length, scalar, used: false })
+    Ok(Property { name, length, scalar, used: false, is_attribute: false })
 }
 
 /// What becomes of an element, by its name and properties.
@@ -253,6 +283,49 @@ struct Row {
     scalars: Vec<f64>,
     /// The list that is used.
     list: Vec<i64>,
+}
+
+/// The attributes of an element.
+struct Columns {
+    /// The name of each, the numbers of the properties that it consists of, and the values.
+    columns: Vec<(String, Vec<usize>, Values)>,
+}
+
+impl Columns {
+    /// Empty ones for the properties that are attributes.
+    fn new(element: &Element) -> Self {
+        let mut columns: Vec<(String, Vec<usize>, Values)> = Vec::new();
+        let attributes = element.properties.iter().enumerate().filter(|(_, property)| property.is_attribute);
+        for (number, Property { name, scalar, .. }) in attributes {
+            let name = String::from_utf8_lossy(name);
+            let values = scalar.values();
+            if let Some((whole, components, all)) = columns.last_mut()
+                && values.is_alike(all)
+            {
+                // The second component tells that the one before it is the first.
+                let stem = if components.len() == 1 { whole.strip_suffix("_0") } else { Some(&**whole) };
+                let is_next = |stem: &&str| !stem.is_empty() && *name == format!("{stem}_{}", components.len());
+                if let Some(stem) = stem.filter(is_next) {
+                    *whole = stem.to_owned();
+                    components.push(number);
+                    continue;
+                }
+            }
+            columns.push((name.into_owned(), vec![number], values));
+        }
+        Self { columns }
+    }
+
+    fn push(&mut self, row: &[f64]) {
+        for (_, components, values) in &mut self.columns {
+            for &property in &*components {
+                let value = row[property];
+                let number =
+                    if values.are_integers() { Number::Integer(integer(value).into()) } else { Number::Float(value) };
+                values.push(number);
+            }
+        }
+    }
 }
 
 /// Where the row at hand stands.
@@ -310,12 +383,24 @@ fn text_row(line: &mut Line<'_>, element: &Element, row: &mut Row) -> Result<usi
                     line.need_word("as many items as the length of the list says")?;
                 }
             }
-        } else if !property.used {
+        } else if !property.used && !property.is_attribute {
             line.need_word("the value of a property")?;
         } else if property.scalar.is_integer() {
             let word = line.need_word("an integer")?;
-            line.parse_integer::<i64>(word, "an integer")?;
+            let value = line.parse_integer::<i64>(word, "an integer")?;
+            if property.is_attribute && !property.scalar.holds(value) {
+                return Err(line.unexpected(word, "an integer of the type of the property"));
+            }
             *scalar = parse_float(word.bytes).unwrap_or(f64::NAN);
+        } else if property.is_attribute {
+            let word = line.need_word("the value of a property")?;
+            // In single precision at once: rounded twice it may be another number.
+            let value = if property.scalar == Type::F32 {
+                parse_number::<f32>(word.bytes).map(f64::from)
+            } else {
+                parse_number(word.bytes)
+            };
+            *scalar = value.ok_or_else(|| line.unexpected(word, "the value of a property, a number"))?;
         } else if property.scalar == Type::F32 {
             *scalar = line.float::<f32>("a coordinate")?.into();
         } else {
@@ -331,6 +416,7 @@ fn binary_row(
     source: &mut Source<'_>,
     element: &Element,
     encoding: Encoding,
+    on_bad: OnBad,
     row: &mut Row,
 ) -> Result<Place<'static>, Fault> {
     const EXPECTED: &str = "as many rows of the element as the header says";
@@ -341,7 +427,7 @@ fn binary_row(
         let position = source.byte();
         let Some(of_length) = property.length else {
             let value = property.scalar.decode(source.take(size, EXPECTED)?, encoding);
-            if property.used && !value.is_finite() {
+            if property.used && !value.is_finite() && on_bad == OnBad::Refuse {
                 return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
             }
             *scalar = value;
@@ -383,24 +469,30 @@ struct Ply {
     vertices: u32,
     coordinates: Option<(usize, Scalars)>,
     intake: Intake,
+    /// The faces, edges and strips before the row at hand.
+    num_cells: usize,
     /// Vertex numbers of the cell at hand.
     word: Vec<u32>,
 }
 
 impl Ply {
     /// The number of an existing vertex.
-    fn vertex(&self, index: i64, position: impl FnOnce() -> Position) -> Result<u32, Fault> {
+    fn vertex(&mut self, index: i64, position: impl FnOnce() -> Position) -> Result<u32, Fault> {
         match u32::try_from(index) {
             Ok(vertex) if vertex < self.vertices => Ok(vertex),
             _ => {
                 let kind = ErrorKind::OutOfRange { index, vertices: self.vertices.into(), first: 0 };
-                Err(Fault::new(position(), kind))
+                self.intake.missing(Fault::new(position(), kind))
             }
         }
     }
 
     /// Takes in one row.
     fn row(&mut self, role: &Role, row: &Row, place: &Place<'_>) -> Result<(), Fault> {
+        if matches!(role, Role::Edge { .. } | Role::Face | Role::Strips) {
+            self.intake.attributes.begin_cell(self.num_cells);
+            self.num_cells += 1;
+        }
         match role {
             Role::Vertex { coordinates } => self.point(coordinates, row),
             Role::Edge { ends } => {
@@ -464,8 +556,13 @@ fn prepare(ply: &mut Ply, element: &Element, role: &Role) -> Result<(), Fault> {
         ply.intake.report.ignored.note(&element.name);
         return Ok(());
     }
-    for property in element.properties.iter().filter(|property| !property.used) {
-        ply.intake.report.ignored.note(&[&element.name[..], b" ", &property.name[..]].concat());
+    for property in element.properties.iter().filter(|property| !property.used && !property.is_attribute) {
+        let name = [&element.name[..], b" ", &property.name[..]].concat();
+        if property.length.is_none() {
+            ply.intake.pass_over(&name);
+        } else {
+            ply.intake.report.ignored.note(&name);
+        }
     }
     if let Role::Vertex { coordinates } = role {
         if ply.coordinates.is_some() {
@@ -484,8 +581,20 @@ fn prepare(ply: &mut Ply, element: &Element, role: &Role) -> Result<(), Fault> {
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
     let Header { encoding, mut elements } = header(source)?;
     source.binary = encoding != Encoding::Text;
-    let mut ply = Ply { vertices: 0, coordinates: None, intake: Intake::new(Format::Ply, options), word: Vec::new() };
+    let mut ply = Ply {
+        vertices: 0,
+        coordinates: None,
+        intake: Intake::new(Format::Ply, options),
+        num_cells: 0,
+        word: Vec::new(),
+    };
     let roles = elements.iter_mut().map(role).collect::<Result<Vec<_>, _>>()?;
+    if ply.intake.attributes.are_kept() {
+        for (element, _) in elements.iter_mut().zip(&roles).filter(|(_, role)| !matches!(role, Role::PassedOver)) {
+            let rest = element.properties.iter_mut().filter(|property| !property.used && property.length.is_none());
+            rest.for_each(|property| property.is_attribute = true);
+        }
+    }
     // All elements first: faces may come before the vertices whose number they need.
     for (element, role) in elements.iter().zip(&roles) {
         prepare(&mut ply, element, role)?;
@@ -495,14 +604,23 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
     for (element, role) in elements.iter().zip(&roles).filter(|(element, _)| !element.properties.is_empty()) {
         row.scalars.clear();
         row.scalars.resize(element.properties.len(), 0.0);
+        let (first, mut columns) = (ply.num_cells, Columns::new(element));
         for _ in 0..element.count {
             if encoding == Encoding::Text {
                 let mut line = source.need_content(None, "as many rows of the element as the header says")?;
                 let list = text_row(&mut line, element, &mut row)?;
+                columns.push(&row.scalars);
                 ply.row(role, &row, &Place::Text(line, list))?;
             } else {
-                let place = binary_row(source, element, encoding, &mut row)?;
+                let place = binary_row(source, element, encoding, options.on_bad, &mut row)?;
+                columns.push(&row.scalars);
                 ply.row(role, &row, &place)?;
+            }
+        }
+        for (name, components, values) in columns.columns {
+            match role {
+                Role::Vertex { .. } => ply.intake.vertex_attribute(&name, components.len(), values),
+                _ => ply.intake.cell_attribute(&name, components.len(), values, first),
             }
         }
     }

@@ -22,11 +22,21 @@ pub struct ReadReport {
     pub split_into: usize,
     /// Simplices dropped because they repeat a vertex.
     pub degenerate_dropped: usize,
+    /// Cells dropped because they name a vertex that is not there, and simplices at vertices that were dropped.
+    pub bad_cells_dropped: usize,
+    /// Vertices dropped because they have no finite coordinates.
+    pub bad_vertices_dropped: usize,
+    /// The first few things that were dropped, each with its place or name, and why: what follows the name of the input.
+    pub bad: Vec<String>,
     /// Facet corners (STL), and vertices if so told, that were welded to an earlier one.
     pub welded: usize,
+    /// Vertices with other attributes than the one that they were welded to, whose attributes stay.
+    pub welded_differing: usize,
     /// Nodes left out because they lie inside edges, faces or volumes of higher-order elements, whose corners alone
     /// are vertices (MSH).
     pub inner_nodes_dropped: usize,
+    /// The names of the attributes that are not kept, for the simplices are not in memory.
+    pub(super) refused_attributes: Vec<String>,
     /// Parts of the input that the reader does not know or does not use.
     pub ignored: Ignored,
 }
@@ -42,9 +52,26 @@ impl ReadReport {
             polyhedra: 0,
             split_into: 0,
             degenerate_dropped: 0,
+            bad_cells_dropped: 0,
+            bad_vertices_dropped: 0,
+            bad: Vec::new(),
             welded: 0,
+            welded_differing: 0,
             inner_nodes_dropped: 0,
+            refused_attributes: Vec::new(),
             ignored: Ignored::default(),
+        }
+    }
+}
+
+impl ReadReport {
+    /// How many of the things that were dropped are named.
+    pub(super) const MOST_NAMED: usize = 8;
+
+    /// Names something that was dropped.
+    pub(super) fn note_bad(&mut self, what: String) {
+        if self.bad.len() < Self::MOST_NAMED {
+            self.bad.push(what);
         }
     }
 }

@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use std::io::{self, Read};
 use std::ops::Range;
 
+use super::OnBad;
 use super::compression::Compression;
 use super::error::{ErrorKind, Excerpt, Fault, Position, excerpt};
 use super::text::{Decimal, Line, Origin};
@@ -56,6 +57,7 @@ pub(super) struct Source<'a> {
     pub(super) compression: Option<Compression>,
     /// Whether binary data have come, after which lines cannot be counted and places are bytes.
     pub(super) binary: bool,
+    on_bad: OnBad,
 }
 
 impl<'a> Source<'a> {
@@ -80,6 +82,11 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
+    /// The same, whose lines take numbers that are not finite for coordinates if they are to be dropped.
+    pub(super) fn on_bad(self, on_bad: OnBad) -> Self {
+        Self { on_bad, ..self }
+    }
+
     fn over(reader: Box<dyn Read + 'a>, length: Option<u64>) -> Self {
         Self {
             reader,
@@ -93,6 +100,7 @@ impl<'a> Source<'a> {
             length,
             compression: None,
             binary: false,
+            on_bad: OnBad::Refuse,
         }
     }
 
@@ -307,7 +315,7 @@ impl<'a> Source<'a> {
             self.lines += 1;
             self.line_begin = self.offset();
         }
-        Line::new(&self.buffer[text], origin)
+        Line::new(&self.buffer[text], origin).on_bad(self.on_bad)
     }
 
     /// What places in text that begins with the next byte are counted from.
@@ -374,7 +382,7 @@ impl<'a> Source<'a> {
     pub(super) fn next_word(&mut self, comment: Option<u8>, stop: Option<u8>) -> Result<Option<Line<'_>>, Fault> {
         let Some(word) = self.pass_word(comment, stop)? else { return Ok(None) };
         let origin = self.origin_at(word.start);
-        Ok(Some(Line::new(&self.buffer[word], origin)))
+        Ok(Some(Line::new(&self.buffer[word], origin).on_bad(self.on_bad)))
     }
 
     /// Passes over the next word; where it is in the buffer.
@@ -410,7 +418,7 @@ impl<'a> Source<'a> {
     ) -> Result<Line<'_>, Fault> {
         if let Some(word) = self.pass_word(comment, stop)? {
             let origin = self.origin_at(word.start);
-            return Ok(Line::new(&self.buffer[word], origin));
+            return Ok(Line::new(&self.buffer[word], origin).on_bad(self.on_bad));
         }
         Err(match self.skip_blanks()? {
             None => truncated(self.end_of_text(), expected),

@@ -100,7 +100,7 @@ impl Stl {
             let mut values = [0.0; 9];
             for (number, (value, bytes)) in (0..).zip(values.iter_mut().zip(record[12..48].chunks_exact(4))) {
                 *value = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-                if !value.is_finite() {
+                if !value.is_finite() && !self.intake.drops_bad() {
                     let position = Position::Byte(start + 12 + 4 * number);
                     return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
                 }

@@ -75,8 +75,15 @@ impl TaggedMesh {
     }
 
     /// The soup, now that all nodes must be there.
-    pub(super) fn finish(self) -> Result<(Soup, ReadReport), Fault> {
-        let first = self.ahead.iter().min_by_key(|(number, _)| **number);
+    pub(super) fn finish(mut self) -> Result<(Soup, ReadReport), Fault> {
+        let drops = self.intake.drops_bad();
+        for (values, declared) in self.values.chunks_exact_mut(3).zip(&self.declared).filter(|_| drops) {
+            if !declared {
+                // Nowhere, like a node without finite coordinates.
+                values.fill(f64::NAN);
+            }
+        }
+        let first = self.ahead.iter().filter(|_| !drops).min_by_key(|(number, _)| **number);
         if let Some((&number, &position)) = first {
             let nodes = self.declared.iter().filter(|&&declared| declared).count() as u64;
             let tag = self.tags.label(number).parse().unwrap_or(0);

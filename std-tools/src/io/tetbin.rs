@@ -4,7 +4,7 @@
 use super::error::{ErrorKind, Fault, Position, excerpt};
 use super::intake::{Intake, reserve};
 use super::source::Source;
-use super::{Format, ReadOptions, ReadReport};
+use super::{Format, OnBad, ReadOptions, ReadReport};
 use crate::soup::{Labels, Scalars, Soup};
 
 /// The bytes that a file begins with.
@@ -28,7 +28,7 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
     let scalars = 3 * u64::from(vertices);
     source.each_record(scalars, 4, "as many vertices as the header says", |position, bytes| {
         let value = f32::from_bits(number(bytes));
-        if !value.is_finite() {
+        if !value.is_finite() && options.on_bad == OnBad::Refuse {
             return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
         }
         values.push(value);
@@ -42,7 +42,7 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
             if *corner >= vertices {
                 let index = i64::from(*corner);
                 let kind = ErrorKind::OutOfRange { index, vertices: vertices.into(), first: 0 };
-                return Err(Fault::new(position, kind));
+                *corner = intake.missing(Fault::new(position, kind))?;
             }
         }
         intake.simplex(&corners).map_err(|refusal| Fault::new(position, refusal.kind(|vertex| vertex.to_string())))

@@ -131,14 +131,14 @@ impl Mesh {
         source.need_end(COMMENT, "file after the last cell")
     }
 
-    fn node(&self, line: &mut Line<'_>) -> Result<u32, Fault> {
+    fn node(&mut self, line: &mut Line<'_>) -> Result<u32, Fault> {
         let word = line.need_word("as many nodes as the cell has")?;
         let index: i64 = line.parse_integer(word, "the number of a node")?;
         match u32::try_from(index.saturating_sub(self.first.into())) {
             Ok(vertex) if vertex < self.nodes => Ok(vertex),
             _ => {
                 let kind = ErrorKind::OutOfRange { index, vertices: self.nodes.into(), first: self.first };
-                Err(line.fault(word.at, kind))
+                self.intake.missing(line.fault(word.at, kind))
             }
         }
     }
@@ -199,7 +199,7 @@ fn with_file<T>(
     let run = || {
         let failed = |error| Fault::new(Position::Whole, ErrorKind::Io(error));
         let file = File::open(path).map_err(failed)?;
-        Source::new(file, None, options.progress)?.reading(read)
+        Source::new(file, None, options.progress)?.on_bad(options.on_bad).reading(read)
     };
     run().map_err(|fault: Fault| fault.in_file(&path.to_string_lossy()))
 }

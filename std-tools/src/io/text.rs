@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::str::FromStr;
 
+use super::OnBad;
 use super::error::{ErrorKind, Fault, Position, excerpt};
 
 /// A line, and the place reached in it.
@@ -11,6 +12,7 @@ pub(super) struct Line<'a> {
     bytes: &'a [u8],
     at: usize,
     origin: Origin,
+    on_bad: OnBad,
 }
 
 /// What places in a line are counted from.
@@ -35,7 +37,17 @@ fn is_blank(byte: u8) -> bool {
 
 impl<'a> Line<'a> {
     pub(super) fn new(bytes: &'a [u8], origin: Origin) -> Self {
-        Self { bytes, at: 0, origin }
+        Self { bytes, at: 0, origin, on_bad: OnBad::Refuse }
+    }
+
+    /// The same line, where numbers that are not finite are let through if they are to be dropped later.
+    pub(super) fn on_bad(self, on_bad: OnBad) -> Self {
+        Self { on_bad, ..self }
+    }
+
+    /// Whether a number may stand for a coordinate.
+    pub(super) fn takes<T: Float>(&self, number: T) -> bool {
+        self.on_bad == OnBad::Drop || number.finite()
     }
 
     /// The same line, which is the line with this number.
@@ -144,8 +156,8 @@ impl<'a> Line<'a> {
 
     /// A word of this line as a finite number.
     pub(super) fn parse_finite<T: Float>(&self, word: Word<'_>, expected: &'static str) -> Result<T, Fault> {
-        match parse_float::<T>(word.bytes) {
-            Some(value) if value.finite() => Ok(value),
+        match parse_number::<T>(word.bytes) {
+            Some(value) if self.takes(value) => Ok(value),
             Some(_) => Err(self.fault(word.at, ErrorKind::NotFinite { found: excerpt(word.bytes) })),
             None => Err(self.unexpected(word, expected)),
         }
@@ -273,6 +285,13 @@ pub(super) fn parse_float<T: Float>(word: &[u8]) -> Option<T> {
         return Some(value);
     }
     std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A floating-point number as above, NaN as any C library writes it.
+pub(super) fn parse_number<T: Float>(word: &[u8]) -> Option<T> {
+    let start = word.strip_prefix(b"-").unwrap_or(word);
+    let is_nan = start.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"nan"));
+    parse_float(if is_nan { b"NaN" } else { word })
 }
 
 /// A plain decimal, `digits[.digits]` of at most 18 digits, with or without a minus before it: what meshes are made of. It

@@ -13,12 +13,17 @@ use crate::soup::{Labels, Scalars, Soup};
 const COMMENT: Option<u8> = Some(b'#');
 
 /// Reads a vertex number, which is one from 0 to below `vertices`.
-pub(super) fn vertex(line: &mut Line<'_>, vertices: u32, expected: &'static str) -> Result<u32, Fault> {
+pub(super) fn vertex(
+    line: &mut Line<'_>,
+    vertices: u32,
+    expected: &'static str,
+    intake: &mut Intake,
+) -> Result<u32, Fault> {
     let word = line.need_word(expected)?;
     let index: i64 = line.parse_integer(word, "the number of a vertex")?;
     match u32::try_from(index) {
         Ok(vertex) if vertex < vertices => Ok(vertex),
-        _ => Err(line.fault(word.at, ErrorKind::OutOfRange { index, vertices: vertices.into(), first: 0 })),
+        _ => intake.missing(line.fault(word.at, ErrorKind::OutOfRange { index, vertices: vertices.into(), first: 0 })),
     }
 }
 
@@ -29,7 +34,7 @@ fn simplex(mut line: Line<'_>, vertices: u32, word: &mut Vec<u32>, intake: &mut 
     let count: u64 = line.integer("the number of vertices of the simplex")?;
     word.clear();
     for _ in 0..count {
-        word.push(vertex(&mut line, vertices, "as many vertices of the simplex as its first number says")?);
+        word.push(vertex(&mut line, vertices, "as many vertices of the simplex as its first number says", intake)?);
     }
     line.end()?;
     intake.simplex(word).map_err(|refusal| line.fault(start, refusal.kind(|vertex| vertex.to_string())))

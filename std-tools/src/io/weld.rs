@@ -5,8 +5,10 @@ use std::str::FromStr;
 
 use hashbrown::HashMap;
 
+use super::attributes;
 use super::error::{ErrorKind, Fault, Position};
 use super::report::ReadReport;
+use crate::attribute::Attribute;
 use crate::soup::{Labels, Scalars, Soup};
 
 /// Which vertices become one.
@@ -125,19 +127,20 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
             left.wrapping_sub(1)
         })
         .collect();
-    let name = |vertex: u32, labels: &Labels| match labels {
-        Labels::Numbered(_) => vertex.to_string(),
-        Labels::Integers(labels) => labels[vertex as usize].to_string(),
-        Labels::Tokens(labels) => labels[vertex as usize].to_string(),
+    let of_vertices: Vec<&Attribute> = soup.attributes.iter().filter(|attribute| attribute.dim == 0).collect();
+    let differs = |&(vertex, &target): &(usize, &u32)| {
+        of_vertices.iter().any(|attribute| !attribute.is_same(vertex, target as usize))
     };
+    report.welded_differing += targets.iter().enumerate().filter(differs).count();
     for (dim, flat) in soup.simplices.iter_mut().enumerate() {
         let mut kept = Vec::with_capacity(flat.len());
+        let mut stays = Vec::new();
         for simplex in flat.chunks_exact(dim + 1) {
             let start = kept.len();
             kept.extend(simplex.iter().map(|&vertex| targets[vertex as usize]));
             if super::cone::repeated(&kept[start..]).is_some() {
+                let names: Vec<_> = simplex.iter().map(|&vertex| soup.labels.name(vertex)).collect();
                 if !drop_degenerate {
-                    let names: Vec<_> = simplex.iter().map(|&vertex| name(vertex, &soup.labels)).collect();
                     let message = format!(
                         "the simplex {} repeats a vertex once vertices are welded; --drop-degenerate drops such cells and \
                          counts them",
@@ -145,14 +148,21 @@ pub(super) fn weld(soup: &mut Soup, report: &mut ReadReport, weld: Weld, drop_de
                     );
                     return Err(Fault::new(Position::Whole, ErrorKind::Rule(message.into())));
                 }
+                let names = names.join(",");
+                report.note_bad(format!(": the simplex {names} repeats a vertex once vertices are welded"));
                 report.degenerate_dropped += 1;
                 kept.truncate(start);
             }
+            stays.push(kept.len() > start);
+        }
+        if dim > 0 {
+            attributes::retain(&mut soup.attributes, dim, &stays);
         }
         kept.iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
         *flat = kept;
     }
     let labels = std::mem::replace(&mut soup.labels, Labels::Numbered(0));
+    attributes::retain(&mut soup.attributes, 0, &stays);
     let (labels, coordinates) = super::intake::retained(labels, soup.coordinates.take(), &stays);
     (soup.labels, soup.coordinates) = (labels, coordinates);
     report.vertices = soup.labels.len();

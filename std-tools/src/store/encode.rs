@@ -11,6 +11,7 @@ use sig_core::format::{self, Column, Encoder, Kind, Section, SectionKind};
 use sig_core::{Dim, Index, IndexWidth};
 
 use super::AlignedBytes;
+use crate::attribute::Attribute;
 use crate::build::{Arrays, Built, SigArrays};
 use crate::frozen::{FrozenTree, LastVertices};
 use crate::soup::{Coordinates, Labels, Scalars};
@@ -102,6 +103,7 @@ pub struct Encoding<'a> {
     parity: Option<(&'a [u8], usize)>,
     filtration: Option<&'a [f64]>,
     provenance: Option<&'a str>,
+    attributes: &'a [Attribute],
 }
 
 /// Integers of one of the widths of a file, borrowed where the builder has them at that width.
@@ -204,6 +206,7 @@ impl<'a> Encoding<'a> {
         encoding.labels = EncodedLabels::new(&built.labels);
         encoding.coordinates = built.coordinates.as_ref().map(coordinate_column);
         encoding.filtration = built.filtration.as_deref();
+        encoding.attributes = &built.attributes;
         let tops = &built.report.top_simplices;
         let num_tops = tops.iter().sum();
         // A vertex alone has no orientation.
@@ -304,6 +307,7 @@ impl<'a> Encoding<'a> {
             parity: None,
             filtration: None,
             provenance: options.provenance,
+            attributes: &[],
         })
     }
 
@@ -367,7 +371,14 @@ impl<'a> Encoding<'a> {
         if let Some((components, column)) = self.coordinates {
             sections.push(Section { components, ..Section::new(SectionKind::Coordinates, column) });
         }
-        sections.sort_by_key(|section| section.kind);
+        sections.extend(self.attributes.iter().map(|attribute| Section {
+            kind: SectionKind::Attribute,
+            dim: Some(attribute.dim),
+            name: &attribute.name,
+            components: u32::try_from(attribute.components).unwrap_or(u32::MAX),
+            column: attribute.values.column(),
+        }));
+        sections.sort_by_key(|section| (section.kind, section.dim, section.name));
         sections
     }
 

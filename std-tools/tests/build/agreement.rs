@@ -125,6 +125,7 @@ fn unused_vertices_are_kept_or_dropped() {
     let mut soup = samples::soup_of(&["135", "57"]);
     let kept = built(&soup);
     assert_eq!(kept.report.unused_kept, 4);
+    assert_eq!(kept.report.first_unused, ["0", "2", "4", "6"]);
     assert_eq!(kept.report.top_simplices, [4, 1, 1]);
     assert_eq!(kept.labels, Labels::Numbered(8));
     let dropping = BuildOptions { unused: Unused::Drop, ..BuildOptions::default() };

@@ -121,6 +121,9 @@ pub enum Error {
     /// [`VertexOrder::Rcm`] needs all edges in memory.
     #[error("the reverse Cuthill–McKee order needs all edges in memory; choose another")]
     Rcm,
+    /// Attributes are for complexes in memory.
+    #[error("attributes are kept of complexes in memory only; --drop-attributes leaves them out")]
+    Attributes,
     /// [`EncodeOptions::pairs`] is for complexes in memory.
     #[error("pairs are written of complexes in memory only")]
     Pairs,
@@ -211,6 +214,9 @@ fn build_in_pieces(
     if encode.pairs {
         return Err(Error::Pairs);
     }
+    if !soup.attributes.is_empty() {
+        return Err(Error::Attributes);
+    }
     words::check(&soup.simplices, soup.labels.len())?;
     for (dim, simplices) in std::mem::take(&mut soup.simplices).into_iter().enumerate() {
         spill.append(dim, &simplices);
@@ -227,6 +233,7 @@ fn build_in_pieces(
         Pieces::count(&Listed { spill: &spill, order: &order }, resources, cut, &meter)?;
     let temporary_bytes = spill.bytes() + words.spool.bytes() + borders.bytes();
     drop(spill);
+    let first_unused = order.name_unused(&labels, declared);
     let (labels, coordinates) = order.permute(labels, coordinates);
     drop(order);
     let whole = Whole::new(&counted);
@@ -237,6 +244,7 @@ fn build_in_pieces(
         listed,
         unused_kept: if keep_unused { num_unused } else { 0 },
         unused_dropped: if keep_unused || !declared { 0 } else { num_unused },
+        first_unused,
         top_simplices: vec![0; whole.first.len()],
         ..BuildReport::default()
     };

@@ -106,6 +106,9 @@ impl<'a> Output<'a> {
             Column::U16(values) => values.iter().try_for_each(|&value| run.push(value.into()))?,
             Column::U32(values) => values.iter().try_for_each(|&value| run.push(value.into()))?,
             Column::U64(values) => values.iter().try_for_each(|&value| run.push(value))?,
+            // The lower bytes, of negative numbers too.
+            Column::I32(values) => values.iter().try_for_each(|value| run.push(value.cast_unsigned().into()))?,
+            Column::I64(values) => values.iter().try_for_each(|value| run.push(value.cast_unsigned()))?,
             Column::F32(values) => values.iter().try_for_each(|value| run.push(value.to_bits().into()))?,
             Column::F64(values) => values.iter().try_for_each(|value| run.push(value.to_bits()))?,
             Column::Bits { bytes, .. } => bytes.iter().try_for_each(|&value| run.push(value.into()))?,

@@ -197,7 +197,7 @@ fn element_bytes(column: &Column<'_>) -> usize {
     match column {
         Column::Bits { .. } | Column::U8(_) => 1,
         Column::U16(_) => 2,
-        Column::U32(_) | Column::F32(_) => 4,
-        Column::U64(_) | Column::F64(_) => 8,
+        Column::U32(_) | Column::I32(_) | Column::F32(_) => 4,
+        Column::U64(_) | Column::I64(_) | Column::F64(_) => 8,
     }
 }

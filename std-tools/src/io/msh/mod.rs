@@ -1,23 +1,28 @@
 //! MSH, the mesh format of Gmsh: versions 2.0 to 2.2 and 4.1, in text and binary of both byte orders.
 //!
-//! This file reads the sections and holds the mesh; `v2` and `v4` read nodes and elements, `shapes` knows the element
-//! types. Cells of every dimension are kept. Elements of higher order stand for their corners; a node that is never a
+//! This file reads the sections and holds the mesh; `v2` and `v4` read nodes and elements, `entities` physical groups,
+//! `shapes` knows the element types. Cells of every dimension are kept. The physical group of an element is its
+//! attribute `ref`, and `data` reads others. Elements of higher order stand for their corners; a node that is never a
 //! corner and lies in such an element is no vertex. Sections other than nodes and elements are passed over.
 
-mod nodes;
+mod data;
+mod entities;
 mod shapes;
+mod tags;
 mod v2;
 mod v4;
 
-use super::error::{ErrorKind, Fault};
+use super::attributes::References;
+use super::error::{ErrorKind, Fault, Position};
 use super::intake::Intake;
 use super::shape::Shape;
 use super::source::{Source, truncated};
 use super::text::{Line, Word};
-use super::{Format, ReadOptions, ReadReport};
+use super::{Format, OnBad, ReadOptions, ReadReport};
 use crate::soup::{Labels, Scalars, Soup};
-use nodes::Nodes;
+use entities::Groups;
 use shapes::shape;
+use tags::Tags;
 
 /// How numbers are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -38,24 +43,48 @@ const PASSED_OVER: &[&[u8]] = &[b"Comments", b"PhysicalNames", b"Entities", b"Pa
 
 /// A mesh as far as it is read.
 struct Mesh {
-    nodes: Nodes,
+    nodes: Tags,
+    /// The coordinates of the nodes, three each.
+    points: Vec<f64>,
+    /// The tags of the elements, if attributes are kept.
+    elements: Tags,
+    num_elements: usize,
+    /// The physical group of each element.
+    references: References,
+    groups: Groups,
     intake: Intake,
     /// The vertex numbers of the nodes of the element at hand.
     word: Vec<u32>,
 }
 
 impl Mesh {
+    /// Says that an element follows, of a physical group, 0 for none.
+    fn begin_element(&mut self, tag: u64, group: i64) {
+        self.references.push(group);
+        self.intake.attributes.begin_cell(self.num_elements);
+        self.num_elements += 1;
+        if self.intake.attributes.are_kept() {
+            self.elements.push(tag);
+        }
+    }
+
     /// Adds the element of the given shape whose nodes are `self.word`.
     fn element(&mut self, shape: Shape) -> Result<(), ErrorKind> {
-        let tags = self.nodes.tags();
-        let label = |vertex: u32| tags[vertex as usize];
+        let tags = self.nodes.as_slice();
+        let label = |vertex: u32| tags.get(vertex as usize).copied().unwrap_or(0);
         let added = self.intake.element(shape, &self.word, label);
         added.map_err(|refusal| refusal.kind(|vertex| label(vertex).to_string()))
     }
 
     /// The vertex number of the node with a tag.
-    fn node(&self, tag: u64) -> Result<u32, ErrorKind> {
-        self.nodes.find(tag).ok_or(ErrorKind::UnknownNode { tag, nodes: self.nodes.len() as u64 })
+    fn node(&mut self, tag: u64, position: impl FnOnce() -> Position) -> Result<u32, Fault> {
+        match self.nodes.find(tag) {
+            Some(node) => Ok(node),
+            None => {
+                let kind = ErrorKind::UnknownNode { tag, nodes: self.nodes.len() as u64 };
+                self.intake.missing(Fault::new(position(), kind))
+            }
+        }
     }
 
     /// Reads the nodes of an element from the rest of a line of text, and adds it.
@@ -64,7 +93,7 @@ impl Mesh {
         for _ in 0..shape.num_nodes {
             let word = line.need_word("as many node tags as the type of the element asks for")?;
             let tag = line.parse_integer(word, "a node tag")?;
-            let node = self.node(tag).map_err(|kind| line.fault(word.at, kind))?;
+            let node = self.node(tag, || line.position(word.at))?;
             self.word.push(node);
         }
         line.end()?;
@@ -72,9 +101,11 @@ impl Mesh {
     }
 
     /// The soup of the vertices that are left without inner nodes.
-    fn finish(self) -> (Soup, ReadReport) {
-        let (tags, values) = self.nodes.into_parts();
-        self.intake.finish(Labels::from_integers(tags), true, Some((3, Scalars::F64(values))))
+    fn finish(mut self) -> (Soup, ReadReport) {
+        let of_nodes = References::new(0, &self.intake.attributes);
+        self.intake.references(of_nodes, self.references);
+        let labels = Labels::from_integers(self.nodes.into_vec());
+        self.intake.finish(labels, true, Some((3, Scalars::F64(self.points))))
     }
 }
 
@@ -153,7 +184,16 @@ fn skip_section(source: &mut Source<'_>, name: &[u8]) -> Result<(), Fault> {
 /// Reads an MSH file.
 pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result<(Soup, ReadReport), Fault> {
     let intake = Intake::new(Format::Msh, options);
-    let mut mesh = Mesh { nodes: Nodes::new(), intake, word: Vec::new() };
+    let mut mesh = Mesh {
+        nodes: Tags::new(),
+        points: Vec::new(),
+        elements: Tags::new(),
+        num_elements: 0,
+        references: References::new(0, &intake.attributes),
+        groups: Groups::default(),
+        intake,
+        word: Vec::new(),
+    };
     let mut format = None;
     let (mut nodes_read, mut elements_read) = (false, false);
     loop {
@@ -191,6 +231,18 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
                 end_section(source, "$EndElements")?;
                 elements_read = true;
             }
+            (b"Entities", Some((Version::V4 { size_of_size }, encoding))) => {
+                mesh.groups = entities::read(source, encoding, size_of_size)?;
+                end_section(source, "$EndEntities")?;
+            }
+            (b"NodeData", Some((_, encoding))) if nodes_read && mesh.intake.attributes.are_kept() => {
+                data::read(source, encoding, data::Of::Nodes, &mut mesh)?;
+                end_section(source, "$EndNodeData")?;
+            }
+            (b"ElementData", Some((_, encoding))) if elements_read && mesh.intake.attributes.are_kept() => {
+                data::read(source, encoding, data::Of::Elements, &mut mesh)?;
+                end_section(source, "$EndElementData")?;
+            }
             (b"MeshFormat" | b"Nodes" | b"Elements", _) => {
                 return Err(line.unexpected(word, "the sections $MeshFormat, $Nodes and $Elements, in this order"));
             }
@@ -200,7 +252,9 @@ pub(super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>) -> Result
             }
             _ => {
                 let name = name.to_vec();
-                if !PASSED_OVER.contains(&&*name) {
+                if name == b"NodeData" || name == b"ElementData" {
+                    mesh.intake.pass_over(&[b"$", &*name].concat());
+                } else if !PASSED_OVER.contains(&&*name) {
                     mesh.intake.report.ignored.note(&[b"$", &*name].concat());
                 }
                 skip_section(source, &name)?;
@@ -243,15 +297,20 @@ impl Binary {
         Ok(u64::from_le_bytes(little))
     }
 
+    /// The next coordinate, or other floating-point number.
+    fn float(self, source: &mut Source<'_>, expected: &'static str) -> Result<f64, Fault> {
+        let mut number = [0; 8];
+        number.copy_from_slice(source.take(8, expected)?);
+        Ok(if self.big_endian { f64::from_be_bytes(number) } else { f64::from_le_bytes(number) })
+    }
+
     /// The next three coordinates.
-    fn point(self, source: &mut Source<'_>) -> Result<[f64; 3], Fault> {
+    fn point(self, source: &mut Source<'_>, on_bad: OnBad) -> Result<[f64; 3], Fault> {
         let mut point = [0.0; 3];
         for value in &mut point {
             let position = source.byte();
-            let mut number = [0; 8];
-            number.copy_from_slice(source.take(8, "a coordinate of the node")?);
-            *value = if self.big_endian { f64::from_be_bytes(number) } else { f64::from_le_bytes(number) };
-            if !value.is_finite() {
+            *value = self.float(source, "a coordinate of the node")?;
+            if !value.is_finite() && on_bad == OnBad::Refuse {
                 return Err(Fault::new(position, ErrorKind::NotFinite { found: value.to_string().into() }));
             }
         }

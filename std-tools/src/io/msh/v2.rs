@@ -20,18 +20,18 @@ pub(super) fn nodes(source: &mut Source<'_>, encoding: Encoding, mesh: &mut Mesh
             Encoding::Text => {
                 let mut line = source.need_content(None, EXPECTED)?;
                 let word = line.need_word("the tag of the node")?;
-                if !mesh.nodes.push_tag(line.parse_integer(word, "the tag of the node")?) {
+                if !mesh.nodes.push(line.parse_integer(word, "the tag of the node")?) {
                     return Err(line.fault(word.at, ErrorKind::TooManyVertices));
                 }
-                mesh.nodes.push_point(text_point(&mut line)?);
+                mesh.points.extend(text_point(&mut line)?);
                 line.end()?;
             }
             Encoding::Binary { big_endian } => {
                 let binary = Binary { big_endian };
-                if !mesh.nodes.push_tag(binary.count(source, EXPECTED)?) {
+                if !mesh.nodes.push(binary.count(source, EXPECTED)?) {
                     return Err(Fault::new(source.byte(), ErrorKind::TooManyVertices));
                 }
-                mesh.nodes.push_point(binary.point(source)?);
+                mesh.points.extend(binary.point(source, mesh.intake.on_bad)?);
             }
         }
     }
@@ -51,12 +51,17 @@ fn text_elements(source: &mut Source<'_>, count: u64, mesh: &mut Mesh) -> Result
     for _ in 0..count {
         let mut line = source.need_content(None, "as many elements as the section says")?;
         let start = line.need_word("the tag of the element")?;
-        line.parse_integer::<i64>(start, "the tag of the element")?;
+        let tag: i64 = line.parse_integer(start, "the tag of the element")?;
         let number = line.need_word("the type of the element")?;
         let shape = text_shape(&line, number)?;
-        for _ in 0..line.integer::<u64>("the number of tags")? {
-            line.need_word("a tag")?;
+        let mut group = 0;
+        for place in 0..line.integer::<u64>("the number of tags")? {
+            let word = line.need_word("a tag")?;
+            if place == 0 {
+                group = line.parse_integer(word, "the number of a physical group")?;
+            }
         }
+        mesh.begin_element(tag.cast_unsigned(), group);
         mesh.text_element(&mut line, start.at, shape)?;
     }
     Ok(())
@@ -76,12 +81,15 @@ fn binary_elements(source: &mut Source<'_>, binary: Binary, count: u64, mesh: &m
         let tags = binary.count(source, "the number of tags")?;
         for _ in 0..follow {
             let start = source.byte();
-            source.skip(4 * (1 + tags), EXPECTED)?;
+            let tag = binary.int(source, EXPECTED)?;
+            let group = if tags > 0 { binary.int(source, EXPECTED)? } else { 0 };
+            source.skip(4 * tags.saturating_sub(1), EXPECTED)?;
+            mesh.begin_element(i64::from(tag).cast_unsigned(), group.into());
             mesh.word.clear();
             for _ in 0..shape.num_nodes {
                 let position = source.byte();
                 let tag = binary.count(source, EXPECTED)?;
-                let node = mesh.node(tag).map_err(|kind| Fault::new(position, kind))?;
+                let node = mesh.node(tag, || position)?;
                 mesh.word.push(node);
             }
             mesh.element(shape).map_err(|kind| Fault::new(start, kind))?;

@@ -69,7 +69,7 @@ fn text_node_block(source: &mut Source<'_>, mesh: &mut Mesh) -> Result<(), Fault
                 return Err(line.trailing("tags of the block"));
             }
             let at = line.at();
-            if !mesh.nodes.push_tag(line.integer("a node tag")?) {
+            if !mesh.nodes.push(line.integer("a node tag")?) {
                 return Err(line.fault(at, ErrorKind::TooManyVertices));
             }
             read += 1;
@@ -77,7 +77,7 @@ fn text_node_block(source: &mut Source<'_>, mesh: &mut Mesh) -> Result<(), Fault
     }
     for _ in 0..count {
         let mut line = source.need_content(None, "as many nodes as the block says")?;
-        mesh.nodes.push_point(text_point(&mut line)?);
+        mesh.points.extend(text_point(&mut line)?);
         // Parametric coordinates may follow.
         while line.skip_blanks() {
             line.float::<f64>("a parametric coordinate")?;
@@ -94,12 +94,12 @@ fn binary_node_block(source: &mut Source<'_>, binary: Binary, size: usize, mesh:
     let count = binary.size(source, size, EXPECTED)?;
     for _ in 0..count {
         let position = source.byte();
-        if !mesh.nodes.push_tag(binary.size(source, size, "as many node tags as the block says")?) {
+        if !mesh.nodes.push(binary.size(source, size, "as many node tags as the block says")?) {
             return Err(Fault::new(position, ErrorKind::TooManyVertices));
         }
     }
     for _ in 0..count {
-        mesh.nodes.push_point(binary.point(source)?);
+        mesh.points.extend(binary.point(source, mesh.intake.on_bad)?);
         if parametric {
             source.skip(8 * dim.min(3), "the parametric coordinates of the node")?;
         }
@@ -123,8 +123,9 @@ pub(super) fn elements(source: &mut Source<'_>, encoding: Encoding, size: usize,
 /// Reads a block; gives the number of its elements.
 fn text_element_block(source: &mut Source<'_>, mesh: &mut Mesh) -> Result<u64, Fault> {
     let mut line = source.need_content(None, "as many blocks of elements as the section says")?;
-    line.integer::<i32>("the dimension of the entity")?;
-    line.integer::<i32>("the tag of the entity")?;
+    let dim = line.integer("the dimension of the entity")?;
+    let entity = line.integer("the tag of the entity")?;
+    let group = mesh.groups.of(dim, entity);
     let number = line.need_word("the type of the elements")?;
     let shape = text_shape(&line, number)?;
     let count = line.integer("the number of elements in the block")?;
@@ -132,7 +133,8 @@ fn text_element_block(source: &mut Source<'_>, mesh: &mut Mesh) -> Result<u64, F
     for _ in 0..count {
         let mut line = source.need_content(None, "as many elements as the block says")?;
         let start = line.need_word("the tag of the element")?;
-        line.parse_integer::<i64>(start, "the tag of the element")?;
+        let tag: i64 = line.parse_integer(start, "the tag of the element")?;
+        mesh.begin_element(tag.cast_unsigned(), group);
         mesh.text_element(&mut line, start.at, shape)?;
     }
     Ok(count)
@@ -141,18 +143,19 @@ fn text_element_block(source: &mut Source<'_>, mesh: &mut Mesh) -> Result<u64, F
 /// Reads a block; gives the number of its elements.
 fn binary_element_block(source: &mut Source<'_>, binary: Binary, size: usize, mesh: &mut Mesh) -> Result<u64, Fault> {
     const EXPECTED: &str = "as many blocks of elements as the section says";
-    binary.int(source, EXPECTED)?;
-    binary.int(source, EXPECTED)?;
+    let (dim, entity) = (binary.int(source, EXPECTED)?, binary.int(source, EXPECTED)?);
+    let group = mesh.groups.of(dim, entity);
     let shape = binary_shape(source, binary, EXPECTED)?;
     let count = binary.size(source, size, EXPECTED)?;
     for _ in 0..count {
         let start = source.byte();
-        source.skip(size as u64, "as many elements as the block says")?;
+        let tag = binary.size(source, size, "as many elements as the block says")?;
+        mesh.begin_element(tag, group);
         mesh.word.clear();
         for _ in 0..shape.num_nodes {
             let position = source.byte();
             let tag = binary.size(source, size, "as many node tags as the type of the element asks for")?;
-            let node = mesh.node(tag).map_err(|kind| Fault::new(position, kind))?;
+            let node = mesh.node(tag, || position)?;
             mesh.word.push(node);
         }
         mesh.element(shape).map_err(|kind| Fault::new(start, kind))?;

@@ -198,12 +198,13 @@ fn poly_data_in_text_and_xml() {
     let mut triangles = super::listed(&soup, 2);
     triangles.sort();
     assert_eq!(triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3], [2, 1, 4]]);
-    assert_eq!((report.polygons, report.ignored.names), (1, vec!["POINT_DATA".to_owned()]));
+    assert_eq!((report.polygons, report.ignored.count, soup.attributes.len()), (1, 0, 1));
     let (xml, report) = super::read_as(Format::Vtu, POLY_DATA_XML).unwrap();
     assert_eq!(xml.labels, Labels::Integers(vec![7, 8, 9, 10, 3]));
     assert_eq!(xml.coordinates, soup.coordinates);
     assert_eq!(f_vector(&xml), f_vector(&soup));
-    assert_eq!(report.ignored.names, ["other"]);
+    assert_eq!((report.ignored.count, &*xml.attributes[0].name), (0, "other"));
+    assert_eq!(xml.attributes[0].values, soup.attributes[0].values);
 }
 
 const MFEM: &str = "MFEM mesh v1.0\n# c\ndimension\n2\n\nelements\n2\n1 2 0 1 2\n1 3 1 3 4 2\n\nboundary\n1\n7 1 0 1\n\n\

@@ -1,6 +1,8 @@
 //! Tests of the readers: real files against counts from elsewhere, then each format, then all formats together.
 
 mod agreement;
+mod attributes;
+mod bad;
 mod detection;
 mod fixtures;
 mod foreign;

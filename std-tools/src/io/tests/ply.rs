@@ -1,5 +1,6 @@
 use super::super::Format;
 use super::{doubles, listed, message, read_as, read_dropping, refused, singles};
+use crate::attribute::Values;
 use crate::soup::Labels;
 
 pub(super) const TEXT: &str = "ply\nformat ascii 1.0\ncomment a square\nobj_info none\nelement vertex 4\nproperty float x\n\
@@ -39,7 +40,8 @@ fn text_and_both_byte_orders_give_the_same_soup() {
     assert_eq!(singles(&soup), [0., 0., 0., 1., 0., 0., 1., 1., 0.1, 0., 1., 0.]);
     assert_eq!(listed(&soup, 1), [[3, 1], [3, 0]]);
     assert_eq!(listed(&soup, 2), [[0, 1, 2], [0, 2, 3]]);
-    assert_eq!(report.ignored.names, ["vertex red", "face texcoord", "camera"]);
+    assert_eq!(report.ignored.names, ["face texcoord", "camera"]);
+    assert_eq!(soup.attributes[0].values, Values::U8(vec![255, 0, 0, 0]));
     assert_eq!((report.polygons, report.split_into), (1, 2));
 }
 

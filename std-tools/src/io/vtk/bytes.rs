@@ -4,6 +4,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
+use super::super::OnBad;
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::source::{Source, truncated};
 use super::{Type, Values};
@@ -19,6 +20,8 @@ pub(super) struct Layout {
     pub(super) wide: bool,
     /// Whether arrays are compressed by zlib.
     pub(super) zlib: bool,
+    /// What becomes of numbers that are not possible.
+    pub(super) on_bad: OnBad,
 }
 
 /// The values of base64's digits; 64 for bytes that are none.
@@ -136,7 +139,8 @@ impl<'s, 'a> Bytes<'s, 'a> {
         values: &mut Values,
     ) -> Result<(), Fault> {
         let most = most.unwrap_or(u64::MAX);
-        let mut numbers = Numbers { scalar, big_endian: layout.big_endian, left: Vec::new(), most, values };
+        let mut numbers =
+            Numbers { scalar, on_bad: layout.on_bad, big_endian: layout.big_endian, left: Vec::new(), most, values };
         if !layout.zlib {
             let mut length = self.length(layout)?;
             let mut piece = vec![0; PIECE];
@@ -192,6 +196,7 @@ const EXPECTED: &str = "as much binary data as the array has";
 /// Numbers out of bytes that come in pieces of any length.
 struct Numbers<'v> {
     scalar: Type,
+    on_bad: OnBad,
     big_endian: bool,
     /// The start of a number whose end has not come.
     left: Vec<u8>,
@@ -211,7 +216,7 @@ impl Numbers<'_> {
             bytes = &bytes[1..];
             if self.left.len() == size {
                 let number = self.scalar.decode(&self.left, self.big_endian);
-                self.values.push(number).map_err(|kind| Fault::new(position, kind))?;
+                self.values.push(number, self.on_bad).map_err(|kind| Fault::new(position, kind))?;
                 self.left.clear();
             }
         }
@@ -220,7 +225,7 @@ impl Numbers<'_> {
                 self.left.extend(number);
             } else {
                 let number = self.scalar.decode(number, self.big_endian);
-                self.values.push(number).map_err(|kind| Fault::new(position, kind))?;
+                self.values.push(number, self.on_bad).map_err(|kind| Fault::new(position, kind))?;
             }
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! VTK's legacy format: five parts, of which the last, data at points and cells, is not read.
+//! VTK's legacy format: five parts, of which `data` reads the last, data at points and cells.
 //!
 //! Unstructured grids and poly data of all versions, in text and binary (which is big-endian).
 
@@ -7,13 +7,13 @@ use super::super::intake::Intake;
 use super::super::source::{Source, truncated};
 use super::super::words::Words;
 use super::super::{Format, ReadOptions, ReadReport};
-use super::{Cells, Type, Types, Values};
+use super::{Cells, Type, Types, Values, data};
 use crate::soup::{Labels, Scalars, Soup};
 
 /// The sections of poly data, and the types of their cells.
 const POLY_DATA: &[(&[u8], u8)] = &[(b"VERTICES", 2), (b"LINES", 4), (b"POLYGONS", 7), (b"TRIANGLE_STRIPS", 6)];
 
-fn scalar_type(name: &[u8]) -> Option<Type> {
+pub(super) fn scalar_type(name: &[u8]) -> Option<Type> {
     Some(match &*name.to_ascii_lowercase() {
         b"char" | b"signed_char" | b"vtktypeint8" => Type::I8,
         b"unsigned_char" | b"vtktypeuint8" => Type::U8,
@@ -38,17 +38,26 @@ struct List {
     kind: Option<u8>,
 }
 
-struct File {
-    binary: bool,
+pub(super) struct File {
+    pub(super) binary: bool,
     points: Option<(u32, Scalars)>,
     lists: Vec<List>,
     types: Option<Vec<u8>>,
-    intake: Intake,
+    /// What the data that follow are at, and of how many of them.
+    pub(super) data: Option<(Of, u64)>,
+    pub(super) intake: Intake,
+}
+
+/// What data are at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Of {
+    Points,
+    Cells,
 }
 
 impl File {
     /// Reads `count` numbers of a type, as text or binary.
-    fn numbers(
+    pub(super) fn numbers(
         &self,
         source: &mut Source<'_>,
         scalar: Type,
@@ -58,20 +67,20 @@ impl File {
     ) -> Result<(), Fault> {
         if self.binary {
             return source.each_record(count, scalar.size(), expected, |position, bytes| {
-                values.push(scalar.decode(bytes, true)).map_err(|kind| Fault::new(position, kind))
+                values.push(scalar.decode(bytes, true), self.intake.on_bad).map_err(|kind| Fault::new(position, kind))
             });
         }
         let mut words = Words::new(source, None);
         for _ in 0..count {
             if !values.push_plain(words.source)? {
-                values.push_text(&words.need(expected)?)?;
+                values.push_text(&words.need(expected)?, self.intake.on_bad)?;
             }
         }
         Ok(())
     }
 
     /// Passes over `count` numbers.
-    fn skip(&self, source: &mut Source<'_>, scalar: Type, count: u64) -> Result<(), Fault> {
+    pub(super) fn skip(&self, source: &mut Source<'_>, scalar: Type, count: u64) -> Result<(), Fault> {
         const EXPECTED: &str = "as many numbers as the array has";
         if self.binary {
             return source.skip(count.saturating_mul(scalar.size() as u64), EXPECTED);
@@ -161,9 +170,19 @@ impl File {
         let keyword = word.bytes.to_ascii_uppercase();
         let position = line.position(word.at);
         match (&*keyword, self.points.is_some()) {
-            (b"POINT_DATA" | b"CELL_DATA", _) => {
-                self.intake.report.ignored.note(word.bytes);
+            (b"POINT_DATA" | b"CELL_DATA", _) if !self.intake.attributes.are_kept() => {
+                self.intake.pass_over(word.bytes);
                 return Ok(true);
+            }
+            (b"POINT_DATA", true) => {
+                let count = line.integer("the number of points")?;
+                let points = self.points.as_ref().map_or(0, |&(points, _)| points.into());
+                self.begin_data(Of::Points, count, points).map_err(|kind| line.fault(word.at, kind))?;
+            }
+            (b"CELL_DATA", true) => {
+                let count = line.integer("the number of cells")?;
+                let cells = self.lists.iter().map(|list| list.ends.len() as u64).sum();
+                self.begin_data(Of::Cells, count, cells).map_err(|kind| line.fault(word.at, kind))?;
             }
             (b"POINTS", false) => {
                 let count = line.integer("the number of points (below 2^32)")?;
@@ -188,7 +207,12 @@ impl File {
             (b"FIELD", _) => {
                 line.need_word("the name of the field")?;
                 let arrays = line.integer("the number of arrays")?;
-                self.field(source, arrays)?;
+                return self.field(source, arrays);
+            }
+            (name, true) if data::is_attribute(name) && self.data.is_some() => {
+                let tuples = self.data.map_or(0, |(_, count)| count);
+                let header = data::header(&mut line, name, tuples, self.binary)?;
+                return self.attribute(source, name, header);
             }
             // Up to an empty line.
             (b"METADATA", _) => while source.next_line()?.is_some_and(|is_empty| !is_empty) {},
@@ -201,24 +225,11 @@ impl File {
         Ok(false)
     }
 
-    /// Passes over arrays of data of the whole.
-    fn field(&mut self, source: &mut Source<'_>, arrays: u64) -> Result<(), Fault> {
-        for _ in 0..arrays {
-            let mut line = source.need_content(None, "as many arrays as the field says")?;
-            let name = line.need_word("the name of the array")?.bytes.to_vec();
-            let components: u32 = line.integer("the number of components")?;
-            let tuples: u32 = line.integer("the number of tuples")?;
-            let word = line.need_word("the type of the array")?;
-            let scalar = scalar_type(word.bytes)
-                .ok_or_else(|| line.unexpected(word, "a type of numbers, as other arrays are not read"))?;
-            self.intake.report.ignored.note(&name);
-            self.skip(source, scalar, u64::from(components) * u64::from(tuples))?;
-        }
-        Ok(())
-    }
-
     fn finish(mut self, end: Position) -> Result<(Soup, ReadReport), Fault> {
         let (points, values) = self.points.ok_or_else(|| truncated(end, "the section POINTS"))?;
+        // The cells of poly data are numbered in this order, in which they stand as a rule.
+        self.lists.sort_by_key(|list| POLY_DATA.iter().position(|&(_, kind)| Some(kind) == list.kind));
+        let mut before = 0;
         for List { vertices, ends, position, kind } in &self.lists {
             let types = match (kind, &self.types) {
                 (Some(kind), _) => Types::All(*kind),
@@ -232,7 +243,8 @@ impl File {
                 }
                 (None, None) => return Err(truncated(end, "the section CELL_TYPES")),
             };
-            Cells { vertices, ends, types, position: *position }.add(0, &mut self.intake)?;
+            Cells { vertices, ends, types, position: *position }.add(0, before, &mut self.intake)?;
+            before += ends.len();
         }
         Ok(self.intake.finish(Labels::Numbered(points as usize), true, Some((3, values))))
     }
@@ -276,7 +288,7 @@ pub(in super::super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>)
     let binary = header(source)?;
     source.binary = binary;
     let intake = Intake::new(Format::Vtk, options);
-    let mut file = File { binary, points: None, lists: Vec::new(), types: None, intake };
+    let mut file = File { binary, points: None, lists: Vec::new(), types: None, data: None, intake };
     while !file.section(source)? {}
     file.finish(source.end_of_text())
 }

@@ -5,6 +5,7 @@
 //! pyramids are read, of higher order by their corners.
 
 mod bytes;
+mod data;
 mod legacy;
 mod shapes;
 mod xml;
@@ -12,10 +13,12 @@ mod xml;
 pub(super) use legacy::read as read_legacy;
 pub(super) use xml::read as read_xml;
 
+use super::OnBad;
 use super::error::{ErrorKind, Fault, Position};
-use super::intake::Intake;
+use super::intake::{Intake, NOWHERE};
 use super::source::Source;
-use super::text::{Decimal, Line};
+use super::text::{Decimal, Line, parse_number};
+use crate::attribute::{self, Number};
 use crate::soup::Scalars;
 
 /// Whether a file that begins so says that it is in the legacy format.
@@ -45,13 +48,6 @@ enum Type {
     F64,
 }
 
-/// A scalar of any type.
-#[derive(Clone, Copy, PartialEq, Debug)]
-enum Number {
-    Integer(i64),
-    Float(f64),
-}
-
 impl Type {
     const fn size(self) -> usize {
         match self {
@@ -71,6 +67,20 @@ impl Type {
         matches!(self, Self::F32 | Self::I8 | Self::U8 | Self::I16 | Self::U16)
     }
 
+    /// An empty column for values of the type; small integers with sign become wider.
+    const fn values(self) -> attribute::Values {
+        match self {
+            Self::U8 => attribute::Values::U8(Vec::new()),
+            Self::U16 => attribute::Values::U16(Vec::new()),
+            Self::U32 => attribute::Values::U32(Vec::new()),
+            Self::U64 => attribute::Values::U64(Vec::new()),
+            Self::I8 | Self::I16 | Self::I32 => attribute::Values::I32(Vec::new()),
+            Self::I64 => attribute::Values::I64(Vec::new()),
+            Self::F32 => attribute::Values::F32(Vec::new()),
+            Self::F64 => attribute::Values::F64(Vec::new()),
+        }
+    }
+
     /// The number in as many bytes as the type has.
     fn decode(self, bytes: &[u8], big_endian: bool) -> Number {
         fn number<const N: usize, T>(bytes: &[u8], big_endian: bool, from: fn([u8; N]) -> T) -> T {
@@ -87,9 +97,8 @@ impl Type {
             Self::U16 => number(bytes, big_endian, u16::from_le_bytes).into(),
             Self::I32 => number(bytes, big_endian, i32::from_le_bytes).into(),
             Self::U32 => number(bytes, big_endian, u32::from_le_bytes).into(),
-            Self::I64 => number(bytes, big_endian, i64::from_le_bytes),
-            // Nothing that is counted or numbered is as large; −1 is as good an error.
-            Self::U64 => i64::try_from(number(bytes, big_endian, u64::from_le_bytes)).unwrap_or(-1),
+            Self::I64 => number(bytes, big_endian, i64::from_le_bytes).into(),
+            Self::U64 => number(bytes, big_endian, u64::from_le_bytes).into(),
             Self::F32 => return Number::Float(number(bytes, big_endian, f32::from_le_bytes).into()),
             Self::F64 => return Number::Float(number(bytes, big_endian, f64::from_le_bytes)),
         })
@@ -108,6 +117,8 @@ enum Values {
     Types(Vec<u8>),
     /// Labels of points.
     Labels(Vec<u64>),
+    /// An attribute.
+    Data(attribute::Values),
 }
 
 impl Values {
@@ -118,6 +129,7 @@ impl Values {
             Self::Vertices(values, _) => values.len(),
             Self::Ends(values) | Self::Labels(values) => values.len(),
             Self::Types(values) => values.len(),
+            Self::Data(values) => values.len(),
         }
     }
 
@@ -130,7 +142,14 @@ impl Values {
         match (self, number) {
             (Self::Points(_), _) => ErrorKind::NotFinite { found: found.into() },
             (Self::Vertices(_, vertices), Number::Integer(index)) => {
+                let index = i64::try_from(index).unwrap_or(i64::MAX);
                 ErrorKind::OutOfRange { index, vertices: (*vertices).into(), first: 0 }
+            }
+            (Self::Data(values), _) if !values.are_integers() => {
+                ErrorKind::Expected { expected: "a number".into(), found: found.into() }
+            }
+            (Self::Data(_), _) => {
+                ErrorKind::Expected { expected: "an integer of the type of the array".into(), found: found.into() }
             }
             _ => ErrorKind::Expected { expected: "an integer, from 0".into(), found: found.into() },
         }
@@ -138,22 +157,27 @@ impl Values {
 
     /// Adds a number; what is wrong with it, if it is not possible here.
     #[expect(clippy::cast_possible_truncation, reason = "single precision goes to single precision")]
-    fn push(&mut self, number: Number) -> Result<(), ErrorKind> {
+    fn push(&mut self, number: Number, on_bad: OnBad) -> Result<(), ErrorKind> {
+        if let Self::Data(values) = self {
+            return if values.push(number) { Ok(()) } else { Err(self.refusal(number)) };
+        }
         #[expect(clippy::cast_precision_loss, reason = "coordinates that are integers")]
         let float = match number {
             Number::Integer(number) => number as f64,
             Number::Float(number) => number,
         };
+        let drops = on_bad == OnBad::Drop;
         let integer = match number {
             Number::Integer(number) => u64::try_from(number).ok(),
             Number::Float(_) => None,
         };
         match (&mut *self, integer) {
-            (Self::Points(Scalars::F32(values)), _) if float.is_finite() => values.push(float as f32),
-            (Self::Points(Scalars::F64(values)), _) if float.is_finite() => values.push(float),
+            (Self::Points(Scalars::F32(values)), _) if float.is_finite() || drops => values.push(float as f32),
+            (Self::Points(Scalars::F64(values)), _) if float.is_finite() || drops => values.push(float),
             (Self::Vertices(values, vertices), Some(number)) if number < u64::from(*vertices) => {
                 values.push(number as u32);
             }
+            (Self::Vertices(values, _), _) if drops => values.push(NOWHERE),
             (Self::Ends(values) | Self::Labels(values), Some(number)) => values.push(number),
             (Self::Types(values), Some(number)) if number < 256 => values.push(number as u8),
             _ => return Err(self.refusal(number)),
@@ -180,18 +204,35 @@ impl Values {
                 push(values, source.plain(|decimal| decimal.integer()?.try_into().ok())?)
             }
             Self::Types(values) => push(values, source.plain(|decimal| decimal.integer()?.try_into().ok())?),
+            Self::Data(_) => false,
         })
     }
 
     /// Adds a number in text, which is all of the line.
-    fn push_text(&mut self, line: &Line<'_>) -> Result<(), Fault> {
+    fn push_text(&mut self, line: &Line<'_>, on_bad: OnBad) -> Result<(), Fault> {
         const COORDINATE: &str = "a coordinate of a point";
         match self {
             Self::Points(Scalars::F32(values)) => values.push(line.parse_finite(line.as_word(), COORDINATE)?),
             Self::Points(Scalars::F64(values)) => values.push(line.parse_finite(line.as_word(), COORDINATE)?),
+            Self::Data(attribute::Values::F32(values)) => {
+                values.push(
+                    parse_number(line.as_word().bytes).ok_or_else(|| line.unexpected(line.as_word(), "a number"))?,
+                );
+            }
+            Self::Data(attribute::Values::F64(values)) => {
+                values.push(
+                    parse_number(line.as_word().bytes).ok_or_else(|| line.unexpected(line.as_word(), "a number"))?,
+                );
+            }
+            Self::Data(_) => {
+                let text = std::str::from_utf8(line.as_word().bytes).ok();
+                let number = text.and_then(|text| text.parse().ok());
+                let number = number.ok_or_else(|| line.unexpected(line.as_word(), "an integer"))?;
+                self.push(Number::Integer(number), OnBad::Refuse).map_err(|kind| line.fault(0, kind))?;
+            }
             _ => {
-                let number = line.parse_integer(line.as_word(), "an integer")?;
-                self.push(Number::Integer(number)).map_err(|kind| line.fault(0, kind))?;
+                let number: i64 = line.parse_integer(line.as_word(), "an integer")?;
+                self.push(Number::Integer(number.into()), on_bad).map_err(|kind| line.fault(0, kind))?;
             }
         }
         Ok(())
@@ -215,8 +256,8 @@ enum Types<'a> {
 }
 
 impl Cells<'_> {
-    /// Adds the cells, whose vertices are numbered from `shift` on.
-    fn add(&self, shift: u32, intake: &mut Intake) -> Result<(), Fault> {
+    /// Adds the cells, whose vertices are numbered from `shift` on; `before` is the number of cells before them.
+    fn add(&self, shift: u32, before: usize, intake: &mut Intake) -> Result<(), Fault> {
         let fault = |message: String| Fault::new(self.position, ErrorKind::Rule(message.into()));
         let (mut start, mut word) = (0, Vec::new());
         for (cell, &end) in self.ends.iter().enumerate() {
@@ -232,6 +273,10 @@ impl Cells<'_> {
             word.clear();
             // A sum that does not fit was refused with the number of points.
             word.extend(vertices.iter().map(|vertex| vertex.saturating_add(shift)));
+            intake.attributes.begin_cell(before + cell);
+            if word.contains(&NOWHERE) {
+                intake.report.note_bad(format!(": cell {} names a vertex that is not there", before + cell));
+            }
             shapes::add(kind, &word, intake).map_err(|kind| fault(format!("cell {cell}: {kind}")))?;
             start = end;
         }

@@ -1,26 +1,30 @@
 //! VTK's XML formats for unstructured grids (`.vtu`) and poly data (`.vtp`).
 //!
-//! Arrays may stand in text, inline in base64, or appended raw or in base64, plain or compressed by zlib. Of the data at the
-//! points an array of integers called `label` gives what the vertices are called, as this program writes it; other data are
-//! passed over. A library for XML is of no help: raw appended data are no XML, and text would be held whole.
+//! Arrays may stand in text, inline in base64, or appended raw or in base64, plain or compressed by zlib. Of the data
+//! at the points an array of integers called `label` gives what the vertices are called, as this program writes it; an
+//! array of the dimensions of the cells, which it writes too, says nothing new. A library for XML is of no help: raw
+//! appended data are no XML, and text would be held whole.
 
 use super::super::error::{ErrorKind, Fault, Position};
 use super::super::intake::Intake;
 use super::super::source::{Source, truncated};
 use super::super::tags::{self, Tag};
 use super::super::words::Words;
-use super::super::{Format, ReadOptions, ReadReport};
+use super::super::{Format, OnBad, ReadOptions, ReadReport};
 use super::bytes::{Bytes, Layout};
+use super::legacy::Of;
 use super::{Cells, Type, Types, Values};
+use crate::attribute::{self, Attribute, MOST_COMPONENTS};
 use crate::soup::{Labels, Scalars, Soup};
 
-/// The elements that hold cells, and the type of those of which the file does not tell one.
+/// The elements that hold cells, and the type of those of which the file does not tell one; in the order in which data at
+/// cells have them.
 const GROUPS: [(&str, &str, Option<u8>); 5] = [
     ("Cells", "NumberOfCells", None),
     ("Verts", "NumberOfVerts", Some(2)),
     ("Lines", "NumberOfLines", Some(4)),
-    ("Strips", "NumberOfStrips", Some(6)),
     ("Polys", "NumberOfPolys", Some(7)),
+    ("Strips", "NumberOfStrips", Some(6)),
 ];
 
 /// What an array is for; groups by number.
@@ -31,12 +35,16 @@ enum Role {
     Vertices(usize),
     Ends(usize),
     Types(usize),
+    /// An attribute of the points or the cells, by its name among those of the file.
+    Data(Of, usize),
 }
 
 /// An array that the reader needs.
 struct Array {
     role: Role,
     values: Values,
+    /// Numbers a row.
+    components: u64,
     position: Position,
 }
 
@@ -60,12 +68,21 @@ impl Piece {
     }
 
     /// How many numbers an array must have, if that is known.
-    fn expected(&self, role: Role) -> Option<u64> {
+    fn expected(&self, role: Role, components: u64) -> Option<u64> {
         match role {
+            Role::Data(of, _) => Some(self.rows(of).saturating_mul(components)),
             Role::Points => Some(3 * u64::from(self.points)),
             Role::Labels => Some(self.points.into()),
             Role::Vertices(_) => None,
             Role::Ends(group) | Role::Types(group) => Some(self.cells[group]),
+        }
+    }
+
+    /// The number of its points, or of its cells.
+    fn rows(&self, of: Of) -> u64 {
+        match of {
+            Of::Points => self.points.into(),
+            Of::Cells => self.cells.iter().fold(0, |sum, &count| sum.saturating_add(count)),
         }
     }
 
@@ -82,6 +99,7 @@ impl Piece {
             Role::Vertices(_) => Values::Vertices(Vec::new(), self.points),
             Role::Ends(_) => Values::Ends(Vec::new()),
             Role::Types(_) => Values::Types(Vec::new()),
+            Role::Data(..) => Values::Data(scalar.values()),
         }
     }
 }
@@ -98,6 +116,8 @@ struct Grid {
     layout: Layout,
     pieces: Vec<Piece>,
     appended: Vec<Appended>,
+    /// The names of the attributes.
+    names: Vec<(Of, Box<str>)>,
     intake: Intake,
 }
 
@@ -135,7 +155,7 @@ fn layout(tag: &Tag) -> Result<Layout, Fault> {
         }
     };
     let big_endian = tag.get("byte_order") == Some("BigEndian");
-    Ok(Layout { big_endian, wide: tag.get("header_type") == Some("UInt64"), zlib })
+    Ok(Layout { on_bad: OnBad::Refuse, big_endian, wide: tag.get("header_type") == Some("UInt64"), zlib })
 }
 
 /// What the array of a tag in the element `section` is for, if the reader needs it.
@@ -163,10 +183,10 @@ fn role(tag: &Tag, section: &str) -> Option<Role> {
 impl Grid {
     /// Reads the array of a tag, or notes where its data will come.
     fn array(&mut self, tag: &Tag, section: &str, source: &mut Source<'_>) -> Result<(), Fault> {
-        let role = role(tag, section);
+        let role = role(tag, section).or_else(|| self.data_role(tag, section));
         let (Some(role), Some(piece)) = (role, self.pieces.last_mut()) else {
             if matches!(section, "PointData" | "CellData") {
-                self.intake.report.ignored.note(tag.get("Name").unwrap_or("").as_bytes());
+                self.intake.pass_over(tag.get("Name").unwrap_or("").as_bytes());
             }
             return Ok(());
         };
@@ -179,7 +199,8 @@ impl Grid {
         let Some(scalar) = tag.get("type").and_then(scalar_type) else {
             return Err(tag.unsupported("an array that is not of type Int8 to UInt64, Float32 or Float64"));
         };
-        let (mut values, most) = (piece.values(role, scalar), piece.expected(role));
+        let components = if tag.get("NumberOfComponents").is_some() { tag.number("NumberOfComponents")? } else { 1 };
+        let (mut values, most) = (piece.values(role, scalar), piece.expected(role, components));
         match tag.get("format").unwrap_or("ascii") {
             "ascii" if tag.empty => {}
             "ascii" => {
@@ -193,7 +214,7 @@ impl Grid {
                     if is_full {
                         return Err(line.trailing("array, which has as many numbers as the piece says,"));
                     }
-                    values.push_text(&line)?;
+                    values.push_text(&line, self.layout.on_bad)?;
                 }
             }
             "binary" => {
@@ -208,9 +229,66 @@ impl Grid {
             _ => return Err(tag.unsupported("an array whose format is not ascii, binary or appended")),
         }
         if let Some(piece) = self.pieces.last_mut() {
-            piece.arrays.push(Array { role, values, position: tag.position });
+            piece.arrays.push(Array { role, values, components, position: tag.position });
         }
         Ok(())
+    }
+
+    /// What an array of data at points or cells is for, if it is an attribute that is kept.
+    fn data_role(&mut self, tag: &Tag, section: &str) -> Option<Role> {
+        let of = match section {
+            "PointData" => Of::Points,
+            "CellData" => Of::Cells,
+            _ => return None,
+        };
+        let name = tag.get("Name").filter(|name| !name.is_empty())?;
+        // Strings have other types.
+        tag.get("type").and_then(scalar_type).filter(|_| self.intake.attributes.are_kept())?;
+        let number = self.names.iter().position(|(there, known)| *there == of && **known == *name);
+        // A second of the name in a piece is passed over.
+        let is_there = |number| self.pieces.last().is_some_and(|piece| piece.find(Role::Data(of, number)).is_some());
+        if number.is_some_and(is_there) {
+            return None;
+        }
+        Some(Role::Data(
+            of,
+            number.unwrap_or_else(|| {
+                self.names.push((of, name.into()));
+                self.names.len() - 1
+            }),
+        ))
+    }
+
+    /// Puts the arrays of each attribute together; where a piece has none, there are no values. Those that differ in type
+    /// are noted only.
+    fn add_attributes(&mut self) {
+        for (number, (of, name)) in std::mem::take(&mut self.names).into_iter().enumerate() {
+            let mut all: Option<(u64, attribute::Values)> = None;
+            let (mut rows, mut differ) = (0, false);
+            for piece in &mut self.pieces {
+                let found = piece.arrays.iter_mut().find(|array| array.role == Role::Data(of, number));
+                if let Some(Array { components, values: Values::Data(values), .. }) = found {
+                    let more = std::mem::replace(values, attribute::Values::U8(Vec::new()));
+                    let all = all.get_or_insert_with(|| (*components, more.rows(1, std::iter::empty())));
+                    differ |= all.0 != *components || *components > MOST_COMPONENTS as u64;
+                    if !differ {
+                        all.1.fill(to_usize(rows * all.0));
+                        differ = !all.1.append(more);
+                    }
+                }
+                rows += piece.rows(of);
+            }
+            match all {
+                Some((components, mut values)) if !differ => {
+                    values.fill(to_usize(rows * components));
+                    match of {
+                        Of::Points => self.intake.vertex_attribute(&name, to_usize(components), values),
+                        Of::Cells => self.intake.cell_attribute(&name, to_usize(components), values, 0),
+                    }
+                }
+                _ => self.intake.report.ignored.note(name.as_bytes()),
+            }
+        }
     }
 
     /// Reads the data that were appended.
@@ -234,7 +312,7 @@ impl Grid {
             };
             bytes.skip(gap)?;
             let Some(piece) = self.pieces.get_mut(piece) else { continue };
-            let most = piece.arrays.get(array).and_then(|array| piece.expected(array.role));
+            let most = piece.arrays.get(array).and_then(|array| piece.expected(array.role, array.components));
             if let Some(array) = piece.arrays.get_mut(array) {
                 bytes.array(self.layout, scalar, most, &mut array.values)?;
             }
@@ -243,7 +321,7 @@ impl Grid {
     }
 
     fn finish(mut self, end: Position) -> Result<(Soup, ReadReport), Fault> {
-        let (mut points, mut labels, mut shift) = (None, Some(Vec::new()), 0_u32);
+        let (mut points, mut labels, mut shift, mut before) = (None, Some(Vec::new()), 0_u32, 0);
         for piece in &self.pieces {
             check(piece, end)?;
             append(&mut points, piece.find(Role::Points));
@@ -262,16 +340,39 @@ impl Grid {
                 if let (Values::Vertices(vertices, _), Values::Ends(ends), position) =
                     (&vertices.values, &ends.values, vertices.position)
                 {
-                    Cells { vertices, ends, types, position }.add(shift, &mut self.intake)?;
+                    Cells { vertices, ends, types, position }.add(shift, before, &mut self.intake)?;
+                    before += ends.len();
                 }
             }
             shift = shift.checked_add(piece.points).ok_or_else(|| Fault::new(end, ErrorKind::TooManyVertices))?;
         }
-        let labels = labels.filter(|labels| all_differ(labels));
+        self.add_attributes();
+        if let Some(same) = labels.take_if(|labels| !all_differ(labels)) {
+            self.intake.vertex_attribute("label", 1, attribute::Values::U64(same));
+        }
         let labels = labels.map_or(Labels::Numbered(shift as usize), Labels::from_integers);
         let points = points.unwrap_or(Scalars::F32(Vec::new()));
-        Ok(self.intake.finish(labels, true, Some((3, points))))
+        let (mut soup, report) = self.intake.finish(labels, true, Some((3, points)));
+        drop_dimensions(&mut soup.attributes);
+        Ok((soup, report))
     }
+}
+
+/// Leaves out the dimensions of cells, which are no news.
+fn drop_dimensions(attributes: &mut Vec<Attribute>) {
+    let is_one = |attribute: &Attribute| *attribute.name == *"dimension";
+    let is_its_own = |attribute: &Attribute| match &attribute.values {
+        attribute::Values::U8(values) => values.iter().all(|&value| usize::from(value) == attribute.dim),
+        _ => false,
+    };
+    if attributes.iter().filter(|attribute| is_one(attribute)).all(is_its_own) {
+        attributes.retain(|attribute| !is_one(attribute));
+    }
+}
+
+/// A number of rows or numbers that are there.
+fn to_usize(number: u64) -> usize {
+    usize::try_from(number).unwrap_or(usize::MAX)
 }
 
 /// Whether no number stands there twice.
@@ -285,10 +386,11 @@ fn all_differ(numbers: &[u64]) -> bool {
 fn check(piece: &Piece, end: Position) -> Result<(), Fault> {
     for array in &piece.arrays {
         let found = array.values.len() as u64;
-        if let Some(declared) = piece.expected(array.role).filter(|&declared| declared != found) {
+        if let Some(declared) = piece.expected(array.role, array.components).filter(|&declared| declared != found) {
             let what = match array.role {
                 Role::Points => "coordinates of points",
                 Role::Labels => "labels of points",
+                Role::Data(..) => "numbers of the attribute",
                 _ => "cells of the piece",
             };
             return Err(Fault::new(array.position, ErrorKind::WrongCount { what, declared, found }));
@@ -326,7 +428,13 @@ pub(in super::super) fn read(source: &mut Source<'_>, options: &ReadOptions<'_>)
     let first = tags::first(source, "VTKFile")?;
     let (pieces, appended) = (Vec::new(), Vec::new());
     let intake = Intake::new(Format::Vtu, options);
-    let mut grid = Grid { layout: layout(&first)?, pieces, appended, intake };
+    let mut grid = Grid {
+        layout: Layout { on_bad: options.on_bad, ..layout(&first)? },
+        pieces,
+        appended,
+        names: Vec::new(),
+        intake,
+    };
     // The element within the piece.
     let mut section: Box<str> = "".into();
     loop {

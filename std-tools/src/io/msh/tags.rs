@@ -1,9 +1,8 @@
-//! The nodes of a mesh: tags, coordinates, and the way from a tag to a number.
+//! Tags of nodes or elements, and the way from a tag to a number.
 
-/// The nodes in the order of the file; a node's number is its place.
-pub(super) struct Nodes {
+/// Tags in the order of the file; the number of a node or element is its place.
+pub(super) struct Tags {
     tags: Vec<u64>,
-    values: Vec<f64>,
     index: Index,
 }
 
@@ -11,40 +10,35 @@ pub(super) struct Nodes {
 enum Index {
     /// The tags count up from this one.
     Consecutive(u64),
-    /// The number by tag, `u32::MAX` where there is none: for tags not much greater than the number of nodes.
+    /// The number by tag, `u32::MAX` where there is none: for tags not much greater than their number.
     Table(Vec<u32>),
     /// Tags and numbers, sorted by tag.
     Sorted(Vec<(u64, u32)>),
 }
 
-impl Nodes {
+impl Tags {
     pub(super) fn new() -> Self {
-        Self { tags: Vec::new(), values: Vec::new(), index: Index::Consecutive(0) }
+        Self { tags: Vec::new(), index: Index::Consecutive(0) }
     }
 
     pub(super) fn len(&self) -> usize {
         self.tags.len()
     }
 
-    pub(super) fn tags(&self) -> &[u64] {
+    pub(super) fn as_slice(&self) -> &[u64] {
         &self.tags
     }
 
-    /// Adds a node's tag; false if there can be no more.
-    pub(super) fn push_tag(&mut self, tag: u64) -> bool {
+    /// Adds a tag; false if there can be no more.
+    pub(super) fn push(&mut self, tag: u64) -> bool {
         self.tags.push(tag);
         self.tags.len() < u32::MAX as usize
     }
 
-    /// Adds coordinates; nodes get theirs in the order of their tags.
-    pub(super) fn push_point(&mut self, point: [f64; 3]) {
-        self.values.extend(point);
-    }
-
-    /// Prepares [`Self::find`], now that all nodes are there.
+    /// Prepares [`Self::find`], now that all tags are there.
     ///
     /// # Errors
-    /// A tag that two nodes bear.
+    /// A tag that two bear.
     pub(super) fn index(&mut self) -> Result<(), u64> {
         let first = self.tags.first().copied().unwrap_or(0);
         let consecutive = self.tags.iter().zip(0..).all(|(&tag, number)| tag.checked_sub(first) == Some(number));
@@ -74,7 +68,7 @@ impl Nodes {
         Ok(())
     }
 
-    /// The number of the node with this tag.
+    /// The number of the tag.
     pub(super) fn find(&self, tag: u64) -> Option<u32> {
         match &self.index {
             Index::Consecutive(first) => {
@@ -86,8 +80,8 @@ impl Nodes {
         }
     }
 
-    /// The tags and the coordinates.
-    pub(super) fn into_parts(self) -> (Vec<u64>, Vec<f64>) {
-        (self.tags, self.values)
+    /// The tags.
+    pub(super) fn into_vec(self) -> Vec<u64> {
+        self.tags
     }
 }
