@@ -47,6 +47,9 @@ const GRID: u32 = 56;
 /// What a measurement prints, by name: seconds, microseconds a query or bytes a simplex.
 type Figures = BTreeMap<String, f64>;
 
+/// The figures of all rounds, by program and name.
+type Samples = BTreeMap<(Program, String), Vec<f64>>;
+
 /// Who does the same work.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Program {
@@ -176,8 +179,8 @@ fn write_grid(side: u32, path: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// All figures of all programs that there are, of all rounds.
-fn measure(task: &Task) -> Result<BTreeMap<(Program, String), Vec<f64>>, Box<dyn Error>> {
-    let mut samples: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+fn measure(task: &Task) -> Result<Samples, Box<dyn Error>> {
+    let mut samples = Samples::new();
     let mut expected: Option<Vec<usize>> = None;
     for _ in 0..ROUNDS {
         for program in Program::ALL {
@@ -294,7 +297,7 @@ fn listed(numbers: &[usize]) -> String {
 }
 
 /// Prints the rows of a task, and makes the chart of its ratios.
-fn report(task: &Task, samples: &BTreeMap<(Program, String), Vec<f64>>) -> Bars {
+fn report(task: &Task, samples: &Samples) -> Bars {
     println!("| **{}** | {}", task.title, " |".repeat(Program::ALL.len() + 2));
     let mut groups = Vec::new();
     for (key, name, unit) in &task.rows {
