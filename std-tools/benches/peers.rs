@@ -105,7 +105,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         panels.push(report(task, &samples));
     }
     let chart = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/figures/peers.svg");
-    let svg = draw_bars("times of the peers over that of SIG", &panels).map_err(|error| error.to_string())?;
+    let svg = draw_bars("the peers over SIG: times, bytes, memory", &panels).map_err(|error| error.to_string())?;
     std::fs::write(&chart, svg)?;
     eprintln!("wrote {}", chart.display());
     Ok(())
@@ -125,9 +125,10 @@ fn tasks(folder: &Path) -> Result<Vec<Task>, Box<dyn Error>> {
         std::iter::once(file.as_os_str().to_owned()).chain(rest.iter().map(OsString::from)).collect()
     };
     let row = |key: &str, name: &str, unit| (key.to_owned(), name.to_owned(), unit);
-    let queries = ["find", "facets", "cofaces1", "star"]
+    let queries = [("find", "find"), ("facets", "facets"), ("cofaces1", "cofacets"), ("star", "star")];
+    let queries = queries
         .into_iter()
-        .flat_map(|query| [1, 3, 5].map(|dim| (format!("{query}{dim}"), format!("{query}, dimension {dim}"), "µs")));
+        .flat_map(|(key, name)| [1, 3, 5].map(|dim| (format!("{key}{dim}"), format!("{name}, dimension {dim}"), "µs")));
     Ok(vec![
         Task {
             name: "rips",
@@ -319,8 +320,9 @@ fn report(task: &Task, samples: &Samples) -> Bars {
             best.map_or(String::new(), |best| format!("{best:.1}"))
         );
         if best.is_some() {
-            let bars = ratios.into_iter().skip(2).map(|ratio| ratio.map(|ratio| (ratio, format!("{ratio:.1}"))));
-            groups.push((format!("{name}, {unit}"), bars.collect()));
+            let bar = |ratio: f64| (ratio, format!("{ratio:.*}", usize::from(ratio < 100.0)));
+            let bars = ratios.into_iter().skip(2).map(|ratio| ratio.map(bar)).collect();
+            groups.push((name.replace("dimension ", ""), bars));
         }
     }
     let series = Program::ALL.into_iter().filter(|program| !program.is_ours());

@@ -37,5 +37,6 @@ impl Alone {
 fn allocations_are_counted() {
     let alone = Alone::new();
     let (peak, _) = alone.peak_of(|| [1, 3, 2].map(|megabytes| vec![1_u8; megabytes << 20].len()));
-    assert!((3 << 20..(3 << 20) + SLACK).contains(&peak), "{peak}");
+    // What the harness frees meanwhile counts, too.
+    assert!(peak.abs_diff(3 << 20) < SLACK, "{peak}");
 }
