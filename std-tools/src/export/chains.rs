@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use sig_core::{Dim, Relations, SimplexId, VertexId};
 
 use super::mesh::Mesh;
-use super::vtu::{CELL_TYPES, array, to_i64};
+use super::vtu::{CELL_TYPES, array, head, to_i64};
 use super::{ExportError, Format};
 
 /// A chain to be shown.
@@ -133,10 +133,7 @@ fn write_vtu<V: Relations>(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let corners: usize = cells.iter().map(|cell| cell.corners.len()).sum();
-    writeln!(out, r#"<?xml version="1.0"?>"#)?;
-    writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
-    writeln!(out, "<UnstructuredGrid>")?;
-    writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{}">"#, used.len(), cells.len())?;
+    head(out, used.len(), cells.len())?;
     writeln!(out, r#"<PointData Scalars="vertex">"#)?;
     array(out, r#"type="Int64" Name="vertex""#, used.len() * 8, |data| {
         used.iter().try_for_each(|&vertex| data.write_all(&to_i64(vertex)))

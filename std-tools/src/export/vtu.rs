@@ -21,10 +21,7 @@ pub(super) fn write<'v, V: Relations>(mesh: &Mesh<'v, V>, out: &mut dyn Write) -
     let counts = mesh.num_cells();
     let num_cells: usize = counts.iter().sum();
     let num_corners: usize = counts.iter().enumerate().map(|(dim, count)| (dim + 1) * count).sum();
-    writeln!(out, r#"<?xml version="1.0"?>"#)?;
-    writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
-    writeln!(out, "<UnstructuredGrid>")?;
-    writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{num_cells}">"#, mesh.num_vertices())?;
+    head(out, mesh.num_vertices(), num_cells)?;
     let labels = mesh.integer_labels();
     if labels.is_some() {
         // The labels have the name.
@@ -128,6 +125,14 @@ pub(super) fn points<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> i
         }
         Ok(())
     })
+}
+
+/// How a grid of so many points and cells begins.
+pub(crate) fn head(out: &mut dyn Write, points: usize, cells: usize) -> io::Result<()> {
+    writeln!(out, r#"<?xml version="1.0"?>"#)?;
+    writeln!(out, r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#)?;
+    writeln!(out, "<UnstructuredGrid>")?;
+    writeln!(out, r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#)
 }
 
 /// An array of so many bytes, which are what `fill` writes.

@@ -217,21 +217,12 @@ pub(super) fn visit<E>(
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
-    use std::convert::Infallible;
 
     use proptest::prelude::*;
 
     use super::*;
     use crate::generate::Triangulation;
-
-    fn listed(triangulation: &Triangulation) -> Vec<Vec<u32>> {
-        let mut simplices = Vec::new();
-        let Ok(()) = triangulation.try_for_each(|simplex| {
-            simplices.push(simplex.to_vec());
-            Ok::<(), Infallible>(())
-        });
-        simplices
-    }
+    use crate::generate::triangulation::tests::listed;
 
     /// The faces of simplices, they themselves among them, by increasing vertices.
     fn faces(simplices: &[Vec<u32>]) -> BTreeSet<Vec<u32>> {

@@ -410,12 +410,13 @@ fn visit_random<E>(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
     use super::*;
 
-    fn listed(triangulation: &Triangulation) -> Vec<Vec<u32>> {
+    /// The simplices that a triangulation visits.
+    pub(in crate::generate) fn listed(triangulation: &Triangulation) -> Vec<Vec<u32>> {
         let mut simplices = Vec::new();
         let Ok(()) = triangulation.try_for_each(|simplex| {
             simplices.push(simplex.to_vec());

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use super::Triangulation;
 use super::triangulation::Rule;
-use crate::export::vtu::{CELL_TYPES, array};
+use crate::export::vtu::{CELL_TYPES, array, head};
 use crate::volume::{Sample, Volume};
 
 impl Triangulation {
@@ -40,13 +40,7 @@ impl Triangulation {
             num_corners += simplex.len();
             Ok::<(), Infallible>(())
         });
-        writeln!(out, r#"<?xml version="1.0"?>"#)?;
-        writeln!(
-            out,
-            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
-        )?;
-        writeln!(out, "<UnstructuredGrid>")?;
-        writeln!(out, r#"<Piece NumberOfPoints="{num_points}" NumberOfCells="{num_cells}">"#)?;
+        head(out, num_points, num_cells)?;
         if let Some(volume) = volume {
             let size = volume.sample().size();
             writeln!(out, r#"<PointData Scalars="value">"#)?;

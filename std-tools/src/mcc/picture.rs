@@ -87,13 +87,7 @@ impl Drawing {
     pub fn write_vtu(&self, out: &mut dyn Write) -> io::Result<()> {
         let count = self.simplices.len();
         let corners: usize = self.simplices.iter().map(|(corners, _)| corners.len()).sum();
-        writeln!(out, r#"<?xml version="1.0"?>"#)?;
-        writeln!(
-            out,
-            r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
-        )?;
-        writeln!(out, "<UnstructuredGrid>")?;
-        writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{count}">"#, self.points.len())?;
+        vtu::head(out, self.points.len(), count)?;
         writeln!(out, r#"<CellData Scalars="cell">"#)?;
         let of = |of: Option<FrontCell>| of.map_or((-1, -1), |(cell, dim)| (i64::from(cell), dim as i64));
         vtu::array(out, r#"type="Int64" Name="cell""#, count * 8, |data| {
