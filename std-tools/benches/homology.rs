@@ -16,7 +16,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{Timing, figure, grid, peak_memory, run, timed, write_points};
+use common::{Timing, figure, grid, listed, peak_memory, run, timed, write_points, write_tetrahedra};
 use sig_tools::build::{BuildOptions, build};
 use sig_tools::flag::{FlagOptions, expand};
 use sig_tools::generate::sphere4;
@@ -75,7 +75,7 @@ fn rips(folder: &Path, count: usize, radius: f64, max_dim: usize) -> Result<Inpu
 
 fn mesh(folder: &Path, name: &str, soup: Soup) -> Result<Input, Box<dyn Error>> {
     let (file, theirs) = (folder.join("mesh.sigc"), folder.join("tetrahedra"));
-    std::fs::write(&theirs, bytemuck::cast_slice(soup.simplices.get(3).map_or(&[][..], Vec::as_slice)))?;
+    write_tetrahedra(&soup, &theirs)?;
     let built = build(soup, &BuildOptions::default())?;
     std::fs::write(&file, &*Encoding::new(&built, &EncodeOptions::default())?.to_bytes()?)?;
     let name = format!("mesh {name}");
@@ -98,10 +98,6 @@ fn alone(file: &Path, max_dim: usize) -> Result<(), Box<dyn Error>> {
         listed(&found.betti)
     );
     Ok(())
-}
-
-fn listed(numbers: &[usize]) -> String {
-    numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(" ")
 }
 
 /// The Betti numbers at the end of a line.

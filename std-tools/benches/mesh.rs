@@ -23,7 +23,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
 
-use common::{Timing, figure, peak_memory, run, timed};
+use common::{Timing, figure, peak_memory, run, timed, write_tetrahedra};
 use rayon::prelude::*;
 use sig_core::format::{Column, SectionKind};
 use sig_core::{Complex, with_complex};
@@ -133,7 +133,7 @@ fn building(soup: &Soup, folder: &Path) -> Result<Built, Box<dyn Error>> {
     let peer = std::env::var_os("GUDHI_MESH").filter(|_| only_tetrahedra);
     let tetrahedra = folder.join("tetrahedra");
     if peer.is_some() {
-        std::fs::write(&tetrahedra, bytemuck::cast_slice(&soup.simplices[3]))?;
+        write_tetrahedra(soup, &tetrahedra)?;
     }
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let (mut all, mut single, mut peers) = (Vec::new(), Vec::new(), Vec::new());

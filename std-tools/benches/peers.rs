@@ -21,9 +21,8 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{Timing, counts, figure, grid, peak_memory, run, timed, write_points};
-use sig_core::relations::Simplices;
-use sig_core::{AnyComplex, Index, Relations, ScratchError, SimplexId, VertexId, with_complex};
+use common::{Timing, counts, figure, grid, listed, peak_memory, run, sum, timed, write_points, write_tetrahedra};
+use sig_core::{AnyComplex, Relations, SimplexId, VertexId, with_complex};
 use sig_tools::build::{BuildOptions, Built, build, complete};
 use sig_tools::chart::{Bars, draw_bars};
 use sig_tools::flag::{FlagOptions, expand};
@@ -88,7 +87,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
         ["alone", ref task @ ..] => return alone(task),
-        ["grid", side, file] => return write_grid(side.parse()?, Path::new(file)),
+        ["grid", side, file] => return write_tetrahedra(&grid(side.parse()?), Path::new(file)),
         _ => {}
     }
     let folder = tempfile::tempdir()?;
@@ -120,7 +119,7 @@ fn tasks(folder: &Path) -> Result<Vec<Task>, Box<dyn Error>> {
     };
     let (large, small) = (points("large", 50_000)?, points("small", 2_000)?);
     let tetrahedra = folder.join("tetrahedra");
-    write_grid(GRID, &tetrahedra)?;
+    write_tetrahedra(&grid(GRID), &tetrahedra)?;
     let with = |file: &Path, rest: &[&str]| {
         std::iter::once(file.as_os_str().to_owned()).chain(rest.iter().map(OsString::from)).collect()
     };
@@ -171,12 +170,6 @@ fn tasks(folder: &Path) -> Result<Vec<Task>, Box<dyn Error>> {
             rows: vec![row("total_s", "from the points", "s")],
         },
     ])
-}
-
-/// Writes the tetrahedra of a grid, four 32-bit numbers of vertices each.
-fn write_grid(side: u32, path: &Path) -> Result<(), Box<dyn Error>> {
-    let tetrahedra = grid(side).simplices;
-    Ok(std::fs::write(path, bytemuck::cast_slice(tetrahedra.get(3).map_or(&[][..], Vec::as_slice)))?)
 }
 
 /// All figures of all programs that there are, of all rounds.
@@ -291,10 +284,6 @@ fn figures(text: &str) -> Figures {
         .filter(|(name, _)| *name != "dims")
         .filter_map(|(name, value)| Some((name.to_owned(), value.parse().ok()?)))
         .collect()
-}
-
-fn listed(numbers: &[usize]) -> String {
-    numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(" ")
 }
 
 /// Prints the rows of a task, and makes the chart of its ratios.
@@ -454,9 +443,4 @@ fn query(complex: &impl Relations) {
         measure("cofaces1", &mut |number| sum(complex.coboundary(simplices[number], dim + 1, &mut scratch)));
         measure("star", &mut |number| sum(complex.star(simplices[number], &mut scratch)));
     }
-}
-
-/// The sum of the ids, so that every one of an answer is read; no query here lacks memory.
-fn sum<I: Index>(answer: Result<Simplices<'_, I>, ScratchError>) -> usize {
-    answer.map_or(0, |simplices| simplices.map(SimplexId::index).sum())
 }

@@ -22,9 +22,8 @@ use std::ffi::OsStr;
 use std::hint::black_box;
 use std::path::Path;
 
-use common::{Timing, arguments, run, timed, write_points};
-use sig_core::relations::Simplices;
-use sig_core::{AnyComplex, AnyTree, Index, Relations, ScratchError, SimplexId, VertexId};
+use common::{Timing, arguments, run, sum, timed, write_points};
+use sig_core::{AnyComplex, AnyTree, Relations, SimplexId, VertexId};
 use sig_tools::build::{BuildOptions, complete};
 use sig_tools::flag::{FlagOptions, expand};
 use sig_tools::generate::{SplitMix64, sphere4};
@@ -116,11 +115,6 @@ fn ask<V: Relations>(view: &V, timings: &mut Timings) {
         measure("link", &mut |number| sum(view.link(simplices[number], &mut scratch)));
         measure("is top", &mut |number| usize::from(view.is_top(simplices[number])));
     }
-}
-
-/// The sum of the ids, so that every one of an answer is read; no query here lacks memory.
-fn sum<I: Index>(answer: Result<Simplices<'_, I>, ScratchError>) -> usize {
-    answer.map_or(0, |simplices| simplices.map(SimplexId::index).sum())
 }
 
 /// Has the peer ask the same queries of random simplices of its own.

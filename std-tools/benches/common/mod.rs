@@ -10,6 +10,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use sig_core::relations::Simplices;
+use sig_core::{Index, ScratchError, SimplexId};
 use sig_tools::points::Points;
 use sig_tools::soup::{Labels, Soup};
 
@@ -107,4 +109,19 @@ pub(crate) fn write_points(points: &Points, path: &Path) -> Result<(), Box<dyn E
     bytes.extend((points.len() as u64).to_le_bytes());
     bytes.extend(points.values().iter().flat_map(|value| value.to_le_bytes()));
     Ok(std::fs::write(path, bytes)?)
+}
+
+/// Writes the tetrahedra of a mesh as the peers' programs read them: four 32-bit numbers of vertices each.
+pub(crate) fn write_tetrahedra(soup: &Soup, path: &Path) -> Result<(), Box<dyn Error>> {
+    Ok(std::fs::write(path, bytemuck::cast_slice(soup.simplices.get(3).map_or(&[][..], Vec::as_slice)))?)
+}
+
+/// Numbers with spaces between.
+pub(crate) fn listed(numbers: &[usize]) -> String {
+    numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(" ")
+}
+
+/// The sum of the ids, so that every one of an answer is read; no query here lacks memory.
+pub(crate) fn sum<I: Index>(answer: Result<Simplices<'_, I>, ScratchError>) -> usize {
+    answer.map_or(0, |simplices| simplices.map(SimplexId::index).sum())
 }
