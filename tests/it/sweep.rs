@@ -74,11 +74,30 @@ proptest! {
 
 #[test]
 fn of_the_least_complexes() {
-    let cases: [&[&[usize]]; 6] =
-        [&[], &[&[0]], &[&[0], &[1], &[2]], &[&[0, 1], &[2]], &[&[0, 1, 2], &[2, 3], &[4]], &[&[0, 1, 2, 3, 4, 5]]];
+    let cases: [&[&[usize]]; 7] = [
+        &[],
+        &[&[0]],
+        &[&[0], &[1], &[2]],
+        &[&[0, 1], &[2]],
+        &[&[0, 1, 2], &[2, 3], &[4]],
+        &[&[0, 1, 2, 3, 4, 5]],
+        &[&[0, 1, 2, 3, 4, 5, 6], &[1, 2, 3, 4, 5, 6, 7]],
+    ];
     for simplices in cases {
         for block in [1, 7, 1 << 20] {
             check(&Oracle::new(simplices), IndexWidth::Bits16, block);
+        }
+    }
+}
+
+/// Books: pages that share an edge, fewer and more than are copied at once, on edges of every number.
+#[test]
+fn of_books() {
+    for pages in [7, 8, 9, 10, 16, 17, 18, 40] {
+        for [one, other] in [[0, 1], [0, pages + 1], [pages, pages + 1], [3, 5]] {
+            let points = (0..pages + 2).filter(|point| ![one, other].contains(point));
+            let book: Vec<[usize; 3]> = points.map(|point| [one, other, point]).collect();
+            check(&Oracle::new(&book), IndexWidth::Bits32, 64);
         }
     }
 }

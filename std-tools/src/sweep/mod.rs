@@ -2,8 +2,8 @@
 //!
 //! One question about one simplex is answered by the core, which walks its star. For all of them that reads the same
 //! rows again and again; a [`Sweep`] inverts the boundary instead: it goes through the simplices above, in the order in
-//! which they lie, and notes each with those of its faces that are in the block at hand, which a counting sort by face
-//! then brings together. Blocks are worked on by all threads, each in memory of a bounded size, and come in order.
+//! which they lie, twice: once to count those at each face that is in the block at hand, once to put them where they
+//! belong. Blocks are worked on by all threads, each in memory of a bounded size, and come in order.
 //!
 //! The answers are those of [`sig_core::Relations`], by increasing id.
 //!
@@ -20,6 +20,8 @@
 //! ```
 
 mod block;
+mod invert;
+mod lists;
 mod ordered;
 mod parts;
 mod rows;
@@ -31,7 +33,9 @@ pub use block::Block;
 pub use ordered::in_order;
 use sig_core::{Complex, Dim, Index, SimplexId};
 
-use block::{Question, Sorter, binomial, narrow};
+use block::narrow;
+use invert::{Overflow, Question, Sorter, binomial};
+use lists::{Chunk, Lists};
 use parts::Parts;
 use rows::Rows;
 
@@ -50,9 +54,9 @@ const BLOCK: usize = 1 << 20;
 ///
 /// # Memory
 ///
-/// For each thread 12 bytes an answer, or 24 where indices are wider than 32 bits, for up to 2^21 answers; and what
-/// `work` makes of eight blocks. Of a simplex that has more answers, for as many as it has. Blocks that turn out larger
-/// are done in halves.
+/// For each thread an index an answer, for up to 2^21 answers, and for each simplex of the block 8 bytes and 4 for each
+/// dimension of the answers; and what `work` makes of eight blocks. Of a simplex that has more answers, for as many as
+/// it has. Blocks that turn out larger are done in halves.
 pub struct Sweep<'c, 'a, I> {
     complex: &'c Complex<'a, I>,
     rows: Rows<'a, I>,
@@ -77,7 +81,7 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
 
     /// C_{p,g} of all p-simplices: nothing for g ≤ p or g > d.
     ///
-    /// Cost: about that of reading the boundary rows from dimension p + 1 to g in order, and of writing the answers.
+    /// Cost: about that of reading the boundary rows from dimension p + 1 to g in order, twice, and of writing the answers.
     /// Rows near the edge of a block are read again for the next: as many again, or fewer, where neighbours have near
     /// numbers; where vertices are numbered at random, all rows for each block. For g = d = p + 1 the lists of the file
     /// are the answers.
@@ -136,29 +140,16 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         if dim + 1 >= self.rows.dims() {
             let across = |id: usize, found: &mut Vec<I>| {
                 let itself = narrow(id);
-                let facets = self.rows.row(dim, id).iter();
-                facets.for_each(|&facet| found.extend(self.listed(facet.to_usize()).filter(|&other| other != itself)));
+                for facet in self.rows.row(dim, id) {
+                    found.extend(self.listed(facet.to_usize()).filter(|&other| other != itself));
+                }
             };
             return self.collect(dim, dim + 1, across, work, each);
         }
-        let (mut starts, mut all) = (vec![0], Vec::new());
-        let lists = |block: &Block<'_, I>| (block.starts().to_vec(), block.ids().to_vec());
-        let kept = self.coboundary(dim - 1, dim, lists, |(block, ids)| {
-            let before = all.len();
-            starts.extend(block.iter().skip(1).map(|start| before + start));
-            all.extend(ids);
-            Ok::<(), std::convert::Infallible>(())
-        });
-        let Ok(()) = kept;
-        let first = self.rows.ids(dim - 1).start;
+        let cofacets = self.cofacets(dim - 1);
         let across = |id: usize, found: &mut Vec<I>| {
-            let itself = narrow(id);
             for facet in self.rows.row(dim, id) {
-                let place = facet.to_usize().wrapping_sub(first);
-                if let Some(&[start, end]) = starts.get(place..).and_then(|starts| starts.first_chunk()) {
-                    let cofacets = all.get(start..end).unwrap_or_default().iter().copied();
-                    found.extend(cofacets.filter(|&other| other != itself));
-                }
+                cofacets.append_others(facet.to_usize(), narrow(id), found);
             }
         };
         self.collect(dim, dim + 1, across, work, each)
@@ -170,6 +161,24 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         self.complex.partial_coboundary(SimplexId::new(simplex)).map(|entry| narrow(entry.index()))
     }
 
+    /// The answers C_{p,p+1} of all p-simplices.
+    fn cofacets(&self, dim: Dim) -> Lists<I> {
+        let ids = self.rows.ids(dim);
+        let (parts, question) = (self.parts(), Question::Cofaces(dim + 1..dim + 2));
+        let shift = self.num_in_block(self.num_incidences(dim, dim + 1), ids.len()).ilog2();
+        let answer = |sorter: &mut Sorter<I>, block: Range<usize>| {
+            let mut chunk = Chunk::new();
+            self.answer((sorter, parts), dim, &question, block, |found| chunk.push(found));
+            chunk
+        };
+        let mut chunks = Vec::new();
+        let Ok(()) = in_order(blocks(ids.clone(), 1 << shift), Sorter::new, answer, |chunk| {
+            chunks.push(chunk);
+            Ok::<(), std::convert::Infallible>(())
+        });
+        Lists::new(ids.start, chunks, shift)
+    }
+
     /// Answers a question by inversion.
     fn invert<T: Send, E>(
         &self,
@@ -179,29 +188,46 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
         mut each: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let ids = self.rows.ids(dim);
-        let parts = self.parts.get_or_init(|| Parts::new(&self.rows, (self.block / 64).clamp(1, 1 << 12)));
         let answers = match question {
             Question::Cofaces(dims) => dims.clone().map(|above| self.num_incidences(dim, above)).sum(),
             Question::OtherEnds => self.num_incidences(0, 1),
         };
         let len = self.num_in_block(answers, ids.len());
+        let parts = self.parts();
         let answer = |sorter: &mut Sorter<I>, block: Range<usize>| {
             let mut results = Vec::new();
-            // Those still to be done, the last one next.
-            let mut waiting = vec![block];
-            while let Some(block) = waiting.pop() {
-                let room = if block.len() > 1 { self.block.saturating_mul(2) } else { usize::MAX };
-                match sorter.answer((&self.rows, parts), question, (dim, block.clone()), room) {
-                    Ok(answers) => results.push(work(&answers)),
-                    Err(block::Overflow) => {
-                        let middle = block.start + block.len() / 2;
-                        waiting.extend([middle..block.end, block.start..middle]);
-                    }
-                }
-            }
+            self.answer((sorter, parts), dim, question, block, |found| results.push(work(found)));
             results
         };
         in_order(blocks(ids, len), Sorter::new, answer, |results| results.into_iter().try_for_each(&mut each))
+    }
+
+    /// The parts of the vertices, found at the first call: to be made by a thread that does not answer.
+    fn parts(&self) -> &Parts {
+        self.parts.get_or_init(|| Parts::new(&self.rows, (self.block / 64).clamp(1, 1 << 12)))
+    }
+
+    /// Answers a question about consecutive simplices, in pieces where there is much to say.
+    fn answer(
+        &self,
+        (sorter, parts): (&mut Sorter<I>, &Parts),
+        dim: Dim,
+        question: &Question,
+        block: Range<usize>,
+        mut each: impl FnMut(&Block<'_, I>),
+    ) {
+        let room = u32::try_from(self.block.saturating_mul(2)).unwrap_or(u32::MAX);
+        // Those still to be done, the last one next.
+        let mut waiting = vec![block];
+        while let Some(block) = waiting.pop() {
+            match sorter.answer((&self.rows, parts), question, (dim, block.clone()), room) {
+                Ok(found) => each(&found),
+                Err(Overflow) => {
+                    let middle = block.start + block.len() / 2;
+                    waiting.extend([middle..block.end, block.start..middle]);
+                }
+            }
+        }
     }
 
     /// What `answer` adds to a list for each simplex, about `each_has` for one.
