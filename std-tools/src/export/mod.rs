@@ -171,7 +171,6 @@ impl Format {
         match self {
             Self::Off | Self::Obj | Self::Tetgen | Self::Tops => "labels, attributes",
             Self::Tetbin => "labels, attributes, precision beyond 32 bits",
-            Self::Vtp => "labels but integers, attributes",
             Self::Ply => "labels, 64-bit integers",
             Self::Vtk => "labels",
             Self::Medit => "labels, attributes but the integer ref",
@@ -180,7 +179,7 @@ impl Format {
             Self::Msh => {
                 "labels but integers from 1, types of attributes but that of ref of elements: others are doubles"
             }
-            Self::Vtu => "labels but integers",
+            Self::Vtu | Self::Vtp => "labels but integers",
             Self::Gltf => "labels, attributes, precision beyond 32 bits, what lies inside of solids",
             Self::SimplexList => "coordinates, attributes",
             Self::Gudhi => "coordinates, attributes, labels but numbers",
@@ -426,7 +425,7 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
         Format::Mfem => mfem::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.is_numbered_from(0)),
         Format::Gltf => gltf::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Tops => tops::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
-        Format::Vtp => vtp::write(&mesh, out).map(|()| mesh.integer_labels().is_some()),
+        Format::Vtp => vtp::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.integer_labels().is_some()),
         Format::Tetbin => tetbin::write(&mesh, out).map(|()| mesh.is_numbered_from(0)),
         Format::Vtu | Format::Tetgen | Format::SimplexList | Format::Gudhi => {
             vtu::write(&mesh, out).map(|lost| losses = Some(lost)).map(|()| mesh.integer_labels().is_some())

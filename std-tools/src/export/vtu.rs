@@ -7,8 +7,8 @@ use std::io::{self, Write};
 
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
-use sig_core::Relations;
 use sig_core::format::Column;
+use sig_core::{Dim, Relations};
 
 use super::attributes::{Attribute, Losses};
 use super::mesh::Mesh;
@@ -17,11 +17,36 @@ use super::mesh::Mesh;
 pub(crate) const CELL_TYPES: [u8; 4] = [1, 3, 5, 10];
 
 pub(super) fn write<'v, V: Relations>(mesh: &Mesh<'v, V>, out: &mut dyn Write) -> io::Result<Losses<'v>> {
-    let (mut vertices, cells, mut left_out) = Attribute::all(mesh.complex, 3);
     let counts = mesh.num_cells();
     let num_cells: usize = counts.iter().sum();
     let num_corners: usize = counts.iter().enumerate().map(|(dim, count)| (dim + 1) * count).sum();
     head(out, mesh.num_vertices(), num_cells)?;
+    let losses = data(mesh, 3, out)?;
+    writeln!(out, "<Points>")?;
+    points(mesh, out)?;
+    writeln!(out, "</Points>\n<Cells>")?;
+    array(out, r#"type="Int64" Name="connectivity""#, num_corners * 8, |data| {
+        mesh.cells(0..=3, |cell| cell.iter().try_for_each(|&vertex| data.write_all(&to_i64(vertex))))
+    })?;
+    array(out, r#"type="Int64" Name="offsets""#, num_cells * 8, |data| {
+        let mut end = 0;
+        mesh.cells(0..=3, |cell| {
+            end += cell.len();
+            data.write_all(&to_i64(end))
+        })
+    })?;
+    array(out, r#"type="UInt8" Name="types""#, num_cells, |data| {
+        mesh.cells(0..=3, |cell| data.write_all(&[CELL_TYPES[cell.len() - 1]]))
+    })?;
+    writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
+    Ok(losses)
+}
+
+/// The data of the points and of the cells of dimension up to `max_dim`, which come by dimension: labels that are integers,
+/// dimensions, attributes.
+pub(super) fn data<'v, V: Relations>(mesh: &Mesh<'v, V>, max_dim: Dim, out: &mut dyn Write) -> io::Result<Losses<'v>> {
+    let (mut vertices, cells, mut left_out) = Attribute::all(mesh.complex, max_dim);
+    let num_cells: usize = mesh.num_cells().iter().take(max_dim + 1).sum();
     let labels = mesh.integer_labels();
     if labels.is_some() {
         // The labels have the name.
@@ -48,31 +73,15 @@ pub(super) fn write<'v, V: Relations>(mesh: &Mesh<'v, V>, out: &mut dyn Write) -
     writeln!(out, r#"<CellData Scalars="dimension">"#)?;
     if cells.iter().all(|attribute| attribute.name != DIMENSION) {
         array(out, r#"type="UInt8" Name="dimension""#, num_cells, |data| {
-            mesh.cells(0..=3, |cell| data.write_all(&[to_u8(cell.len() - 1)]))
+            mesh.cells(0..=max_dim, |cell| data.write_all(&[to_u8(cell.len() - 1)]))
         })?;
     }
     for attribute in &cells {
         array(out, &described(attribute), attribute.row_bytes() * num_cells, |data| {
-            mesh.rows(0..=3).try_for_each(|(dim, row)| attribute.write_binary(dim, row, data))
+            mesh.rows(0..=max_dim).try_for_each(|(dim, row)| attribute.write_binary(dim, row, data))
         })?;
     }
-    writeln!(out, "</CellData>\n<Points>")?;
-    points(mesh, out)?;
-    writeln!(out, "</Points>\n<Cells>")?;
-    array(out, r#"type="Int64" Name="connectivity""#, num_corners * 8, |data| {
-        mesh.cells(0..=3, |cell| cell.iter().try_for_each(|&vertex| data.write_all(&to_i64(vertex))))
-    })?;
-    array(out, r#"type="Int64" Name="offsets""#, num_cells * 8, |data| {
-        let mut end = 0;
-        mesh.cells(0..=3, |cell| {
-            end += cell.len();
-            data.write_all(&to_i64(end))
-        })
-    })?;
-    array(out, r#"type="UInt8" Name="types""#, num_cells, |data| {
-        mesh.cells(0..=3, |cell| data.write_all(&[CELL_TYPES[cell.len() - 1]]))
-    })?;
-    writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
+    writeln!(out, "</CellData>")?;
     Ok(Losses { left_out, ..Losses::default() })
 }
 
@@ -94,16 +103,6 @@ fn described(attribute: &Attribute<'_>) -> String {
     };
     let name = attribute.name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
     format!(r#"type="{scalar}" Name="{name}" NumberOfComponents="{}""#, attribute.components)
-}
-
-/// The labels, if they are integers, as data at the points.
-pub(super) fn labels<V: Relations>(mesh: &Mesh<'_, V>, out: &mut dyn Write) -> io::Result<()> {
-    let Some(labels) = mesh.integer_labels() else { return Ok(()) };
-    writeln!(out, r#"<PointData Scalars="label">"#)?;
-    array(out, r#"type="UInt64" Name="label""#, mesh.num_vertices() * 8, |data| {
-        labels.into_iter().try_for_each(|label| data.write_all(&label.to_le_bytes()))
-    })?;
-    writeln!(out, "</PointData>")
 }
 
 /// The points, filled up to three coordinates, in their own precision.

@@ -90,6 +90,13 @@ proptest! {
     }
 
     #[test]
+    fn vtp_gives_all_types(tops in tops(2), seed: u64, number in 0_u8..8, components in 1..4_usize, left_out: u64) {
+        let shapes = [("a", number, components), ("b & \"<c>\" %41", (number + 3) % 8, 1), (REFERENCE, 4, 1)];
+        comes_back(soup(&tops, 0, &shapes, seed, left_out), Format::Vtp)?;
+        comes_back(soup(&tops, 17, &shapes, seed, left_out), Format::Vtp)?;
+    }
+
+    #[test]
     fn ply_gives_all_types_but_64_bit_integers(tops in tops(2), seed: u64, number in 0_u8..6, components in 1..4_usize) {
         let numbers = [0, 1, 2, 4, 6, 7];
         let (one, other) = (numbers[usize::from(number)], numbers[usize::from(number + 3) % 6]);
