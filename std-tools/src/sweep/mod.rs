@@ -66,7 +66,7 @@ pub struct Sweep<'c, 'a, I> {
 
 impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
     /// Sweeps over a complex. Cost: none yet; the first sweep that looks upwards makes one pass over the edges, and
-    /// keeps two numbers for each few thousand simplices.
+    /// keeps a few dozen numbers for each thousand simplices.
     #[must_use]
     pub fn new(complex: &'c Complex<'a, I>) -> Self {
         let rows = Rows::new(complex);
@@ -204,7 +204,7 @@ impl<'c, 'a, I: Index> Sweep<'c, 'a, I> {
 
     /// The parts of the vertices, found at the first call: to be made by a thread that does not answer.
     fn parts(&self) -> &Parts {
-        self.parts.get_or_init(|| Parts::new(&self.rows, (self.block / 64).clamp(1, 1 << 12)))
+        self.parts.get_or_init(|| Parts::new(&self.rows, (self.block / 64).clamp(1, 1 << 10)))
     }
 
     /// Answers a question about consecutive simplices, in pieces where there is much to say.
