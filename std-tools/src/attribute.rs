@@ -8,8 +8,11 @@ use sig_core::format::Column;
 use sig_core::{Dim, Relations};
 
 /// The name of the attribute that formats with a single integer a vertex or a cell read and write: MEDIT's references,
-/// MFEM's attributes, Gmsh's physical groups.
+/// MFEM's attributes, Gmsh's physical groups, TetGen's boundary markers.
 pub const REFERENCE: &str = "ref";
+
+/// The name of the attribute that TetGen's files have, which name none.
+pub(crate) const NAMELESS: &str = "attribute";
 
 /// The most components that are read of an attribute: the rest of the work multiplies by it.
 pub(crate) const MOST_COMPONENTS: usize = 64;

@@ -169,7 +169,10 @@ impl Format {
     #[must_use]
     pub const fn loses(self) -> &'static str {
         match self {
-            Self::Off | Self::Obj | Self::Tetgen | Self::Tops => "labels, attributes",
+            Self::Off | Self::Obj | Self::Tops => "labels, attributes",
+            Self::Tetgen => {
+                "labels, attributes but one, in doubles, of nodes and largest cells, and the integer ref of others"
+            }
             Self::Tetbin => "labels, attributes, precision beyond 32 bits",
             Self::Ply => "labels, 64-bit integers",
             Self::Vtk => "labels",
@@ -440,11 +443,7 @@ pub fn export(complex: &impl Relations, format: Format, out: &mut dyn Write) -> 
     notes.extend((format == Format::Gltf && complex.dim() == Some(3)).then_some(Note::InsideLeftOut));
     match losses {
         None => notes.extend(without_attributes(complex)),
-        Some(Losses { left_out, converted }) => {
-            notes.extend(named(left_out).map(Note::AttributesLeftOut));
-            notes.extend(named(converted).map(Note::AttributesConverted));
-            notes.extend(named(of_faces(complex)).map(Note::AttributesOfFacesLeftOut));
-        }
+        Some(losses) => notes.extend(of_attributes(complex, losses)),
     }
     Ok(notes)
 }
@@ -475,7 +474,7 @@ pub fn export_file(
     let mesh = Mesh::new(complex);
     tetgen::write(&mesh, file, out)?;
     let labels = (!mesh.is_numbered_from(0)).then_some(Note::LabelsLeftOut);
-    Ok(labels.into_iter().chain(without_attributes(complex)).collect())
+    Ok(labels.into_iter().chain(of_attributes(complex, tetgen::losses(&mesh))).collect())
 }
 
 /// Names, each once, in order; `None` if there is none.
@@ -484,6 +483,14 @@ fn named(names: Vec<impl Into<String>>) -> Option<Vec<String>> {
     names.sort_unstable();
     names.dedup();
     (!names.is_empty()).then_some(names)
+}
+
+/// What became of the attributes of a complex.
+fn of_attributes(complex: &impl Relations, losses: Losses<'_>) -> impl Iterator<Item = Note> {
+    let left_out = named(losses.left_out).map(Note::AttributesLeftOut);
+    let converted = named(losses.converted).map(Note::AttributesConverted);
+    let of_faces = named(of_faces(complex)).map(Note::AttributesOfFacesLeftOut);
+    [left_out, converted, of_faces].into_iter().flatten()
 }
 
 /// That the attributes of a complex are not written.

@@ -1,18 +1,22 @@
 //! TetGen's files: points in `.node`, tetrahedra in `.ele`, triangles in `.face`, edges in `.edge`, numbered from 0 or 1.
 //!
 //! A file of cells needs the `.node` beside it; a `.node` brings the files of cells that lie beside it. Tetrahedra of 10
-//! nodes stand for their corners. Attributes and boundary markers are passed over. Triangle's files of points in the plane
-//! are read too.
+//! nodes stand for their corners. Triangle's files of points in the plane are read too.
+//!
+//! The numbers that follow a node or a tetrahedron are the components of the attribute `attribute`, for the format has no
+//! names; boundary markers of nodes, triangles and edges are the attribute `ref`.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use super::attributes::{Attributes, References};
 use super::error::{ErrorKind, Fault, Position, ReadError};
 use super::intake::{Intake, reserve};
 use super::shape::Shape;
 use super::source::Source;
-use super::text::Line;
+use super::text::{Line, parse_number};
 use super::{Format, ReadOptions, ReadReport};
+use crate::attribute::{NAMELESS, Values};
 use crate::soup::{Labels, Scalars, Soup};
 
 const COMMENT: Option<u8> = Some(b'#');
@@ -24,7 +28,59 @@ struct Mesh {
     nodes: u32,
     dim: usize,
     values: Vec<f64>,
+    of_vertices: References,
+    of_cells: References,
+    /// The cells of the files before.
+    num_cells: usize,
     intake: Intake,
+}
+
+/// The numbers behind the nodes or the cells of a file.
+struct Numbers {
+    components: usize,
+    values: Vec<f64>,
+    /// Whether a boundary marker comes after them.
+    has_marker: bool,
+}
+
+impl Numbers {
+    /// As many as the first line of the file says.
+    const fn new(components: u32, markers: u32) -> Self {
+        Self { components: components as usize, values: Vec::new(), has_marker: markers > 0 }
+    }
+
+    /// Reads those of a line, to its end, and gives the marker, 0 for want of one.
+    fn read(&mut self, line: &mut Line<'_>, attributes: &Attributes) -> Result<i64, Fault> {
+        for _ in 0..self.components {
+            const EXPECTED: &str = "an attribute, a number, as many as the first line says";
+            let word = line.need_word(EXPECTED)?;
+            let value = parse_number(word.bytes).ok_or_else(|| line.unexpected(word, EXPECTED))?;
+            if attributes.are_kept() {
+                self.values.push(value);
+            }
+        }
+        let marker = if self.has_marker { line.integer("a boundary marker, an integer")? } else { 0 };
+        // Two tetrahedra may follow a triangle.
+        pass_numbers(line)?;
+        Ok(marker)
+    }
+
+    /// The attribute that the numbers are, with its components; `None` if there are none, or none is kept.
+    fn attribute(self, intake: &mut Intake) -> Option<(usize, Values)> {
+        if self.components > 0 && !intake.attributes.are_kept() {
+            intake.pass_over(NAMELESS.as_bytes());
+            return None;
+        }
+        (self.components > 0).then_some((self.components, Values::F64(self.values)))
+    }
+}
+
+/// The rest of a line of numbers.
+fn pass_numbers(line: &mut Line<'_>) -> Result<(), Fault> {
+    while line.skip_blanks() {
+        line.float::<f64>("numbers to the end of the line")?;
+    }
+    Ok(())
 }
 
 /// The files of cells.
@@ -47,20 +103,14 @@ impl Cells {
     }
 }
 
-/// The rest of a line of numbers: attributes, markers.
-fn pass_numbers(line: &mut Line<'_>) -> Result<(), Fault> {
-    while line.skip_blanks() {
-        line.float::<f64>("an attribute or a marker, which are numbers")?;
-    }
-    Ok(())
-}
-
-/// The numbers at the start of the first line.
-fn counts<const N: usize>(source: &mut Source<'_>, expected: &'static str) -> Result<[u32; N], Fault> {
+/// The numbers of the first line; those that are not there are 0, but not the first `needed`.
+fn counts<const N: usize>(source: &mut Source<'_>, needed: usize, expected: &'static str) -> Result<[u32; N], Fault> {
     let mut line = source.need_content(COMMENT, expected)?;
     let mut counts = [0; N];
-    for count in &mut counts {
-        *count = line.integer(expected)?;
+    for (place, count) in counts.iter_mut().enumerate() {
+        if place < needed || line.skip_blanks() {
+            *count = line.integer(expected)?;
+        }
     }
     pass_numbers(&mut line)?;
     Ok(counts)
@@ -68,7 +118,9 @@ fn counts<const N: usize>(source: &mut Source<'_>, expected: &'static str) -> Re
 
 impl Mesh {
     fn read_nodes(&mut self, source: &mut Source<'_>) -> Result<(), Fault> {
-        let [nodes, dim] = counts(source, "the numbers of nodes (below 2^32) and of their coordinates, 2 or 3")?;
+        const EXPECTED: &str =
+            "the numbers of nodes (below 2^32), of their coordinates, 2 or 3, of their attributes and of their markers";
+        let [nodes, dim, attributes, markers] = counts(source, 2, EXPECTED)?;
         if !(2..=3).contains(&dim) {
             let kind = ErrorKind::Unsupported(format!("nodes of {dim} coordinates are not read, but of 2 or 3").into());
             return Err(Fault::new(source.end_of_text(), kind));
@@ -76,6 +128,7 @@ impl Mesh {
         self.dim = dim as usize;
         self.nodes = nodes;
         self.values.reserve(reserve(u64::from(nodes) * 3));
+        let mut numbers = Numbers::new(attributes, markers);
         for number in 0..nodes {
             let mut line = source.need_content(COMMENT, "as many nodes as the first line says")?;
             let word = line.need_word("the number of the node")?;
@@ -90,29 +143,41 @@ impl Mesh {
             for _ in 0..dim {
                 self.values.push(line.float("a coordinate of the node")?);
             }
-            pass_numbers(&mut line)?;
+            self.of_vertices.push(numbers.read(&mut line, &self.intake.attributes)?);
+        }
+        if let Some((components, values)) = numbers.attribute(&mut self.intake) {
+            self.intake.vertex_attribute(NAMELESS, components, values);
         }
         source.need_end(COMMENT, "file after the last node")
     }
 
     fn read_cells(&mut self, source: &mut Source<'_>, cells: Cells) -> Result<(), Fault> {
-        let (count, shape) = match cells {
+        let (count, shape, mut numbers) = match cells {
             Cells::Tetrahedra => {
-                let [count, nodes] = counts(source, "the numbers of tetrahedra and of their nodes, 4 or 10")?;
-                match (nodes, self.dim) {
-                    (4, 3) => (count, Shape::simplex(4, 4)),
-                    (10, _) => (count, Shape::simplex(4, 10)),
-                    (3, 2) => (count, Shape::simplex(3, 3)),
-                    (6, _) => (count, Shape::simplex(3, 6)),
+                const EXPECTED: &str = "the numbers of tetrahedra, of their nodes, 4 or 10, and of their attributes";
+                let [count, nodes, attributes] = counts(source, 2, EXPECTED)?;
+                let shape = match (nodes, self.dim) {
+                    (4, 3) => Shape::simplex(4, 4),
+                    (10, _) => Shape::simplex(4, 10),
+                    (3, 2) => Shape::simplex(3, 3),
+                    (6, _) => Shape::simplex(3, 6),
                     _ => {
                         let message = format!("cells of {nodes} nodes are not read");
                         return Err(Fault::new(source.end_of_text(), ErrorKind::Unsupported(message.into())));
                     }
-                }
+                };
+                (count, shape, Numbers::new(attributes, 0))
             }
-            Cells::Triangles => (counts::<1>(source, "the number of triangles")?[0], Shape::simplex(3, 3)),
-            Cells::Edges => (counts::<1>(source, "the number of edges")?[0], Shape::simplex(2, 2)),
+            Cells::Triangles => {
+                let [count, markers] = counts(source, 1, "the number of triangles, and of their markers")?;
+                (count, Shape::simplex(3, 3), Numbers::new(0, markers))
+            }
+            Cells::Edges => {
+                let [count, markers] = counts(source, 1, "the number of edges, and of their markers")?;
+                (count, Shape::simplex(2, 2), Numbers::new(0, markers))
+            }
         };
+        let first = self.num_cells;
         let mut nodes = Vec::new();
         for _ in 0..count {
             let mut line = source.need_content(COMMENT, "as many cells as the first line says")?;
@@ -123,10 +188,15 @@ impl Mesh {
             for _ in 0..shape.num_nodes {
                 nodes.push(self.node(&mut line)?);
             }
-            pass_numbers(&mut line)?;
+            self.of_cells.push(numbers.read(&mut line, &self.intake.attributes)?);
+            self.intake.attributes.begin_cell(self.num_cells);
+            self.num_cells += 1;
             let label = |vertex: u32| u64::from(vertex) + u64::from(self.first);
             let added = self.intake.element(shape, &nodes, label);
             added.map_err(|refusal| line.fault(start, refusal.kind(|vertex| label(vertex).to_string())))?;
+        }
+        if let Some((components, values)) = numbers.attribute(&mut self.intake) {
+            self.intake.cell_attribute(NAMELESS, components, values, first);
         }
         source.need_end(COMMENT, "file after the last cell")
     }
@@ -143,7 +213,8 @@ impl Mesh {
         }
     }
 
-    fn finish(self) -> (Soup, ReadReport) {
+    fn finish(mut self) -> (Soup, ReadReport) {
+        self.intake.references(self.of_vertices, self.of_cells);
         let labels = match self.first {
             0 => Labels::Numbered(self.nodes as usize),
             _ => Labels::Integers((1..=u64::from(self.nodes)).collect()),
@@ -153,7 +224,9 @@ impl Mesh {
 }
 
 fn mesh(options: &ReadOptions<'_>) -> Mesh {
-    Mesh { first: 0, nodes: 0, dim: 3, values: Vec::new(), intake: Intake::new(Format::Tetgen, options) }
+    let intake = Intake::new(Format::Tetgen, options);
+    let [of_vertices, of_cells] = [0, 0].map(|absent| References::new(absent, &intake.attributes));
+    Mesh { first: 0, nodes: 0, dim: 3, values: Vec::new(), of_vertices, of_cells, num_cells: 0, intake }
 }
 
 /// Reads a `.node` file alone: points.

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::attribute::{REFERENCE, Values};
+use crate::attribute::{NAMELESS, REFERENCE, Values};
 
 /// The shape that a name has wherever it is: a type by number, and components.
 type Shape = (&'static str, u8, usize);
@@ -104,6 +104,17 @@ proptest! {
     }
 
     #[test]
+    fn tetgen_gives_one_attribute_and_markers(tops in tops(3), seed: u64, components in 1..4_usize, left_out: u64) {
+        let mut soup = soup(&tops, 0, &[(NAMELESS, 7, components), (REFERENCE, 4, 1)], seed, left_out);
+        soup.attributes.retain(|attribute| match &*attribute.name {
+            REFERENCE => attribute.dim < 3,
+            _ => attribute.dim % 3 == 0,
+        });
+        let original = file(soup, VertexOrder::Hilbert);
+        prop_assert!(file(through_files(&original).0, VertexOrder::Hilbert) == original);
+    }
+
+    #[test]
     fn msh_gives_doubles_and_physical_groups(tops in tops(3), seed: u64, width in 0..3_usize, left_out: u64) {
         // Nodes have no physical group.
         let mut soup = soup(&tops, 1, &[("a", 7, [1, 3, 9][width]), (REFERENCE, 4, 1)], seed, left_out);
@@ -163,6 +174,12 @@ fn what_a_format_cannot_hold_is_named() {
     assert_eq!(of(Format::Msh).1, [Note::LabelsLeftOut, converted, faces.clone()]);
     let left_out = Note::AttributesLeftOut(names(&["label", "uv"]));
     assert_eq!(of(Format::Medit).1, [Note::LabelsLeftOut, left_out, faces]);
+    with_complex!(AnyComplex::from_bytes(&original).unwrap(), complex => {
+        let notes = export_file(&complex, Format::Tetgen, "node", &mut Vec::new()).unwrap();
+        let left_out = Note::AttributesLeftOut(names(&["label", "uv"]));
+        let faces = Note::AttributesOfFacesLeftOut(names(&["ref (dimension 1)"]));
+        assert_eq!(notes, [left_out, faces]);
+    });
     let all = Note::AttributesLeftOut(names(&["label", "ref", "uv"]));
     assert_eq!(of(Format::Off).1, std::slice::from_ref(&all));
     assert_eq!(of(Format::SimplexList).1, [Note::CoordinatesLeftOut, all]);
