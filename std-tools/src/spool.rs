@@ -1,7 +1,7 @@
 //! Numbers on disk that are of no use after the work: what does not fit memory while a complex is built.
 //!
 //! The file has no name where the system allows that, else one that is removed when the file is opened or closed: whatever
-//! ends the process, nothing is left.
+//! ends the process, nothing is left. Where something is to be left, a spool is over a file that has a name.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -9,9 +9,12 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use serde::{Deserialize, Serialize};
 use sig_core::Dim;
 
-/// 32-bit numbers in one nameless file, written in runs and read back run by run, from any thread.
+use crate::store::crc32;
+
+/// 32-bit numbers in one file, written in runs and read back run by run, from any thread.
 #[derive(Debug)]
 pub struct Spool {
     /// The file and its length in bytes.
@@ -19,13 +22,18 @@ pub struct Spool {
 }
 
 /// Numbers that were appended together.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Run {
     start: u64,
     pub(crate) len: usize,
 }
 
 impl Run {
+    /// Where it ends, in bytes.
+    pub(crate) fn end(self) -> u64 {
+        self.start + (self.len * size_of::<u32>()) as u64
+    }
+
     /// The numbers at some places in it.
     pub(crate) fn part(self, places: Range<usize>) -> Self {
         Self { start: self.start + (places.start * size_of::<u32>()) as u64, len: places.len() }
@@ -39,6 +47,18 @@ impl Spool {
     /// If no file can be created there.
     pub fn new_in(directory: &Path) -> io::Result<Self> {
         Ok(Self { file: Mutex::new((tempfile::tempfile_in(directory)?, 0)) })
+    }
+
+    /// The first `len` bytes of `file`; what follows them is dropped.
+    ///
+    /// # Errors
+    /// If there are fewer.
+    pub(crate) fn over(file: File, len: u64) -> io::Result<Self> {
+        if file.metadata()?.len() < len {
+            return Err(changed());
+        }
+        file.set_len(len)?;
+        Ok(Self { file: Mutex::new((file, len)) })
     }
 
     fn file(&self) -> MutexGuard<'_, (File, u64)> {
@@ -76,6 +96,11 @@ impl Spool {
     }
 }
 
+/// What was read is not what was written.
+pub(crate) fn changed() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, "temporary data were changed by another program")
+}
+
 /// Writes at a place in a file.
 pub(crate) fn write_at(mut file: &File, start: u64, bytes: &[u8]) -> io::Result<()> {
     file.seek(SeekFrom::Start(start))?;
@@ -83,9 +108,12 @@ pub(crate) fn write_at(mut file: &File, start: u64, bytes: &[u8]) -> io::Result<
 }
 
 /// Rows of the same length one after the other, all but the last of them on disk.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Rows {
     runs: Vec<Run>,
+    /// Of what is on disk.
+    checksum: u32,
+    #[serde(skip)]
     last: Vec<u32>,
 }
 
@@ -101,14 +129,17 @@ impl Rows {
     pub(crate) fn flush(&mut self, spool: &Spool) -> io::Result<()> {
         if !self.last.is_empty() {
             self.runs.push(spool.append(&self.last)?);
+            self.checksum = crc32(self.checksum, bytemuck::cast_slice(&self.last));
             self.last = Vec::new();
         }
         Ok(())
     }
 
-    /// The runs on disk.
-    pub(crate) fn runs(&self) -> &[Run] {
-        &self.runs
+    /// The numbers of all rows, which are on disk.
+    pub(crate) fn read(&self, spool: &Spool) -> io::Result<Vec<u32>> {
+        let mut numbers = Vec::with_capacity(self.runs.iter().map(|run| run.len).sum());
+        self.runs.iter().try_for_each(|&run| spool.read(run, &mut numbers))?;
+        if crc32(0, bytemuck::cast_slice(&numbers)) == self.checksum { Ok(numbers) } else { Err(changed()) }
     }
 }
 
@@ -248,14 +279,13 @@ mod tests {
         }
         for (which, rows) in (0..).zip(&mut rows) {
             rows.flush(&spool).unwrap();
-            let mut all = Vec::new();
-            for &run in rows.runs() {
-                spool.read(run, &mut all).unwrap();
-            }
+            let all = rows.read(&spool).unwrap();
             let expected: Vec<u32> = (0..50).flat_map(|pair| [2 * pair + which, 2 * pair + which + 1]).collect();
             assert_eq!(all, expected);
         }
         assert_eq!(spool.bytes(), 800);
+        spool.overwrite(Run { start: 400, len: 1 }, &[1000]).unwrap();
+        assert_eq!(rows.map(|rows| rows.read(&spool).is_ok()), [false, true], "number 100 is in a run of the first");
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0, "the file has no name");
     }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 fn sig(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sig"));
@@ -77,6 +77,48 @@ fn an_end_leaves_nothing() {
         }
         assert_eq!(names(place), ["g.txt"]);
     }
+}
+
+/// With `--resume`, interrupted and killed at many points until it is done.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_build_goes_on() {
+    let directory = tempfile::tempdir().unwrap();
+    let place = directory.path();
+    done(&sig(place, &["generate", "grid", "30", "30", "30", "-o", "g.txt"]).output().unwrap());
+    let build = |out| {
+        let arguments = ["build", "g.txt", "-o", out, "--memory", "32MiB", "--threads", "2", "--resume", "work"];
+        sig(place, &arguments)
+    };
+    let start = Instant::now();
+    done(&build("whole.sigc").output().unwrap());
+    let (time, whole) = (start.elapsed(), fs::read(place.join("whole.sigc")).unwrap());
+    let (mut ended, mut resumed) = (0, 0);
+    for (round, signal) in (0..8).zip(["-INT", "-KILL"].iter().cycle()) {
+        // Spread evenly, and later each time, so that it ends.
+        let mut after = time.mul_f64((f64::from(round) * 0.618_033_988_749_895).fract());
+        loop {
+            let child = build("g.sigc").spawn().unwrap();
+            sleep(after);
+            let _ = Command::new("kill").args([signal, child.id().to_string().as_str()]).stderr(Stdio::null()).status();
+            let output = child.wait_with_output().unwrap();
+            resumed += u32::from(String::from_utf8_lossy(&output.stderr).contains("resume work: "));
+            if place.join("g.sigc").exists() {
+                if !output.status.success() {
+                    // Ended between the last step and the removal of what was kept.
+                    let _ = fs::remove_dir_all(place.join("work"));
+                }
+                break;
+            }
+            ended += 1;
+            after += time / 12;
+        }
+        assert!(fs::read(place.join("g.sigc")).unwrap() == whole);
+        fs::remove_file(place.join("g.sigc")).unwrap();
+        assert_eq!(names(place), ["g.txt", "whole.sigc"]);
+    }
+    println!("{ended} ended early, {resumed} found what was done");
+    assert!(ended > 0 && resumed > 0);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::fmt;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use sig_core::{Dim, Index};
 
 use crate::build::SigArrays;
@@ -53,7 +54,7 @@ impl fmt::Display for BuildReport {
 }
 
 /// What the arrays and the marks of the listed simplices tell for the report.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Counts {
     pub(super) distinct_listed: usize,
     pub(super) non_maximal: usize,

@@ -1,6 +1,7 @@
 //! `sig build`: meshes and lists of simplices become a complex in a file.
 
 use std::fmt;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -11,7 +12,7 @@ use serde::Serialize;
 use sig_core::format::Column;
 use sig_core::{Index, IndexWidth, SimplexId};
 use sig_tools::attribute;
-use sig_tools::build::external::{Resources, build_to_file};
+use sig_tools::build::external::{self, Kept, Resources, build_to_file};
 use sig_tools::build::{self, Arrays, BuildOptions, BuildReport, Built, SigArrays, Unused, VertexOrder};
 use sig_tools::io::{self as readers, Compression, Format, MergeReport, OnBad, ReadOptions, ReadReport, Weld};
 use sig_tools::names::simplex_name;
@@ -34,7 +35,8 @@ Examples:
   sig build part1.txt part2.txt -o all.sigc --force     simplices by label, from two files
   sig build bracket.msh.gz -o bracket.sigc --order input --json
   printf 'a,b,c\\nc,d\\n' | sig build - -o small.sigc --format simplices
-  sig build huge.msh -o huge.sigc --memory 4GiB         larger than that, by way of the disk")]
+  sig build huge.msh -o huge.sigc --memory 4GiB         larger than that, by way of the disk
+  sig build huge.msh -o huge.sigc --memory 4GiB --resume work   run again, it goes on")]
 pub(super) struct Args {
     /// The inputs; `-` is standard input
     #[arg(required = true, value_name = "INPUT")]
@@ -91,6 +93,12 @@ pub(super) struct Args {
     /// have no name there, and are gone however the work ends
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp_dir: Option<PathBuf>,
+
+    /// Keep what is done with `--memory` in this directory, so that the same command, after an interruption, goes on from
+    /// there. It takes the temporary data and the unfinished file, and should be on the disk of OUT. What this program
+    /// made there is removed in the end, and so is the directory if it was not there
+    #[arg(long, value_name = "DIR", requires = "memory", conflicts_with = "temp_dir")]
+    resume: Option<PathBuf>,
 
     /// Print a JSON object on what was read and built
     #[arg(long)]
@@ -209,20 +217,50 @@ impl Args {
         let [input] = self.inputs.as_slice() else {
             return Err(UsageError("--memory is for one input; put several lists into one".to_owned()).into());
         };
+        let kept = self.resume.as_deref().map(Kept::open).transpose()?;
+        let found = kept.as_ref().and_then(|kept| Some((self.resume.as_deref()?, kept.found()?)));
+        if let Some((directory, [pieces, counted, written])) = found {
+            let (directory, pieces) = (directory.display(), grouped(pieces));
+            let (counted, written) = (grouped(counted), grouped(written));
+            output::log(format_args!(
+                "resume {directory}: simplices dealt out to {pieces} pieces, {counted} of them counted, {written} written"
+            ));
+        }
+        let report = self.in_pieces(input, memory, kept.as_ref());
+        if let (Err(error), Some(directory)) = (&report, &self.resume)
+            && kept.is_some_and(|kept| kept.is_of_use())
+            && !matches!(error.downcast_ref(), Some(external::Error::OfAnother { .. }))
+        {
+            let directory = directory.display();
+            output::log(format_args!("kept   {directory}: what was done; the same command goes on from there"));
+        }
+        report
+    }
+
+    /// Builds out of core, and keeps what is done in `kept`.
+    fn in_pieces(&self, input: &Path, memory: u64, kept: Option<&Kept>) -> anyhow::Result<Report> {
         let (path, existing) = (&self.target.output, self.target.existing());
         let beside = path.parent().filter(|parent| !parent.as_os_str().is_empty() && !output::is_stdout(path));
-        let directory = self.temp_dir.as_deref().or(beside).unwrap_or(Path::new("."));
+        let chosen = self.resume.as_deref().or(self.temp_dir.as_deref());
+        let directory = chosen.or(beside).unwrap_or(Path::new("."));
         let unusable = || format!("{}: cannot keep temporary data there", directory.display());
         let spill = Spill::new_in(directory).with_context(unusable)?;
         let (soup, read) = self.read_one(input, Some(&spill))?;
         let bars = progress::Phases::new();
         let show = |phase, done, total| bars.show(phase, done, total);
         let (options, encode) = (self.build_options(&show), self.encode_options());
-        let outcome = output::to_file(path, existing, directory, |file| {
-            build_to_file(soup, spill, &options, &encode, Resources { memory, directory }, file)
-        });
+        let resources = Resources { memory, directory, kept };
+        let build = |file: &File| build_to_file(soup, spill, &options, &encode, resources, file);
+        let outcome = match kept {
+            None => output::to_file(path, existing, directory, build),
+            Some(kept) => build(kept.file()).map_err(anyhow::Error::from),
+        };
         bars.clear();
         let outcome = outcome?;
+        if let Some(kept) = kept {
+            output::place(&kept.path(), path, existing)?;
+            kept.finish();
+        }
         let inputs = vec![Input::new(input, read)];
         Ok(Report {
             output: path.display().to_string(),

@@ -84,6 +84,17 @@ where
     Ok(filled)
 }
 
+/// Gives its name to a file that is there as `source`, or writes it to standard output.
+pub(super) fn place(source: &Path, path: &Path, existing: Existing) -> anyhow::Result<()> {
+    if is_stdout(path) {
+        let mut file = std::fs::File::open(source)?;
+        stdout(|out| io::copy(&mut file, out).map(drop))?;
+    } else {
+        atomic::place(source, path, existing)?;
+    }
+    Ok(())
+}
+
 /// The arguments of a file to be written.
 #[derive(clap::Args)]
 pub(super) struct Target {

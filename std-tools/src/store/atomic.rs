@@ -16,7 +16,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 /// What becomes of a file that has the name already.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -136,6 +136,39 @@ pub fn write_file<T, E: From<WriteError>>(
     temporary.persist(path, existing)?;
     sync_directory(directory_of(path)).map_err(|error| WriteError::Sync { path: path.to_owned(), error })?;
     Ok(filled)
+}
+
+/// Gives the name `path` to a file that is there as `source`, complete: as if [`write()`] had written it. Where the two are
+/// on different file systems, it is copied; otherwise `source` is gone.
+///
+/// # Errors
+/// [`WriteError`]; but for [`WriteError::Sync`], `source` is where it was.
+pub fn place(source: &Path, path: &Path, existing: Existing) -> Result<(), WriteError> {
+    check(path, existing)?;
+    let resolved = fs::canonicalize(path).ok().filter(|_| path.is_symlink());
+    let path = resolved.as_deref().unwrap_or(path);
+    let failed = |error| WriteError::Write { path: path.to_owned(), error };
+    let mut file = File::options().read(true).write(true).open(source).map_err(failed)?;
+    if let Ok(replaced) = fs::metadata(path) {
+        file.set_permissions(replaced.permissions()).map_err(failed)?;
+    }
+    file.sync_all().map_err(failed)?;
+    let mut source = TempPath::try_from_path(source).map_err(failed)?;
+    source.disable_cleanup(true);
+    let guard = temporaries();
+    let placed = match existing {
+        Existing::Refuse => source.persist_noclobber(path),
+        Existing::Replace => source.persist(path),
+    };
+    drop(guard);
+    match placed.map_err(|failed| failed.error) {
+        Err(error) if error.kind() == io::ErrorKind::CrossesDevices => {
+            write_file(path, existing, |mut out| io::copy(&mut file, &mut out).map(drop).map_err(failed))
+        }
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(WriteError::Exists { path: path.to_owned() }),
+        Err(error) => Err(failed(error)),
+        Ok(()) => sync_directory(directory_of(path)).map_err(|error| WriteError::Sync { path: path.to_owned(), error }),
+    }
 }
 
 /// The temporaries that exist.
@@ -290,12 +323,12 @@ mod unnamed {
 }
 
 /// The directory in which a file called `path` is.
-fn directory_of(path: &Path) -> &Path {
+pub(crate) fn directory_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Brings a directory to disk, and with it a rename in it, where the system lets it be opened.
-fn sync_directory(directory: &Path) -> io::Result<()> {
+pub(crate) fn sync_directory(directory: &Path) -> io::Result<()> {
     match File::open(directory) {
         Ok(directory) if cfg!(unix) => directory.sync_all(),
         Err(error) if error.kind() != io::ErrorKind::PermissionDenied && cfg!(unix) => Err(error),
@@ -352,6 +385,26 @@ mod tests {
         assert!(matches!(failed, Err(WriteError::Write { .. })));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names(directory.path()), ["a.sigc"]);
+    }
+
+    /// From the same file system, and from another where there is one.
+    #[test]
+    fn a_file_that_is_there_gets_a_name() {
+        let directory = tempfile::tempdir().unwrap();
+        let other = tempfile::tempdir_in("/dev/shm").ok();
+        for from in [Some(&directory), other.as_ref()].into_iter().flatten() {
+            let (source, path) = (from.path().join("source"), directory.path().join("a.sigc"));
+            fs::write(&source, "one").unwrap();
+            place(&source, &path, Existing::Refuse).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), b"one");
+            fs::write(&source, "two").unwrap();
+            assert!(matches!(place(&source, &path, Existing::Refuse), Err(WriteError::Exists { .. })));
+            assert_eq!((fs::read(&path).unwrap(), fs::read(&source).unwrap()), (b"one".to_vec(), b"two".to_vec()));
+            place(&source, &path, Existing::Replace).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), b"two");
+            assert_eq!(names(directory.path()), ["a.sigc"]);
+            fs::remove_file(path).unwrap();
+        }
     }
 
     #[test]

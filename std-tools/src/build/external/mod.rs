@@ -8,7 +8,7 @@
 //! piece owns are consecutive in each dimension of the whole. One step a file:
 //!
 //! 1. `plan` samples the complex and cuts it into ranges whose pieces fit the memory; the listed simplices are dealt out
-//!    to the pieces, on disk;
+//!    to the pieces, on disk (`count`);
 //! 2. every piece is built and counted, and the numbers of the simplices at its border go to disk for the pieces that
 //!    need them: facets without the least vertex, and top simplices that begin in another piece;
 //! 3. `whole` adds up where everything goes, and lays out the file (`output`);
@@ -17,7 +17,13 @@
 //! Disk: each listed simplex once as it comes, and once for each piece that it is in (one or two where the vertex order is
 //! a good one, its vertices where it is not), and a number for each simplex at a border. Time: about twice that of building
 //! in memory. What has to fit the memory is the vertices and, on each thread, the simplices around any one vertex.
+//!
+//! What is on disk has no name and is gone when the work ends. Where it is to outlive an interruption, it has, and it is on
+//! record that the simplices were dealt out, and which pieces were counted and written ([`Kept`]): none of that is done again.
 
+mod count;
+mod kept;
+mod key;
 mod output;
 mod piece;
 mod plan;
@@ -26,25 +32,29 @@ mod tests;
 mod whole;
 mod write;
 
+use std::borrow::Cow;
 use std::fs::File;
+use std::hash::Hasher;
 use std::io;
-use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use sig_core::{Dim, IndexWidth, MAX_DIM};
 
-use super::limits::Stage;
 use super::order::{Order, number_vertices};
 use super::{BuildError, BuildOptions, BuildReport, Meter, Phase, Unused, VertexOrder, words};
 use crate::soup::{Coordinates, Labels, Scalars, Soup};
-use crate::spool::{Rows, Spill, Spool};
+use crate::spool::{Spill, Spool};
 use crate::store::{EncodeError, EncodeOptions};
+use count::Pieces;
+use kept::{Past, Record};
+use key::Fingerprint;
 use piece::{Counted, Piece};
-use plan::{Ranges, Survey};
 use whole::Whole;
-use write::{Needed, Writer};
+use write::Writer;
+
+pub use kept::Kept;
 
 /// How many times the result a piece takes in memory while it is built, at most.
 const PEAK: u64 = 3;
@@ -60,6 +70,20 @@ pub struct Resources<'a> {
     pub memory: u64,
     /// Where temporary data are kept; they have no name there and are gone when the work ends, however it does.
     pub directory: &'a Path,
+    /// Where those are kept that outlive an interruption, if that is wanted.
+    pub kept: Option<&'a Kept>,
+}
+
+impl Resources<'_> {
+    /// Numbers on disk: those that `kept` takes where they outlive an interruption, else none.
+    fn spool(&self, kept: impl FnOnce(&Kept) -> io::Result<Spool>) -> io::Result<Spool> {
+        self.kept.map_or_else(|| Spool::new_in(self.directory), kept)
+    }
+
+    /// Something was done; it is on record where that outlives an interruption.
+    fn record(&self, record: &Record<'_>) -> io::Result<()> {
+        self.kept.map_or(Ok(()), |kept| kept.record(record))
+    }
 }
 
 /// What was built.
@@ -127,6 +151,43 @@ pub enum Error {
     /// [`EncodeOptions::pairs`] is for complexes in memory.
     #[error("pairs are written of complexes in memory only")]
     Pairs,
+    /// A directory for a build that can be interrupted, or a file in it, cannot be created or read.
+    #[error("{}: cannot keep what is done there: {error}", path.display())]
+    Keep {
+        /// The directory or file.
+        path: PathBuf,
+        /// What the system says.
+        #[source]
+        error: io::Error,
+    },
+    /// A file has the name of one that is kept, and is none.
+    #[error("{}: not a file that an interrupted build left, or damaged; remove it, or keep what is done elsewhere", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Another process builds with the directory.
+    #[error("{}: another build is at work there", directory.display())]
+    InUse {
+        /// The directory.
+        directory: PathBuf,
+    },
+    /// What is kept is of another build.
+    #[error(
+        "{}: what is kept there is of a build with another {what}: {was}, now {is}; build as then, or remove the directory, \
+         or take another one",
+        directory.display()
+    )]
+    OfAnother {
+        /// The directory.
+        directory: PathBuf,
+        /// What differs.
+        what: String,
+        /// What it was.
+        was: String,
+        /// What it is now.
+        is: String,
+    },
 }
 
 /// How the ranges are found.
@@ -139,10 +200,14 @@ enum Cut<'a> {
 }
 
 /// Builds the complex of all faces of the simplices of `soup` and of `spill`, on the vertices of `soup`, and writes it to
-/// `file`, which is empty.
+/// `file`, which is empty; with [`Resources::kept`] it is [`Kept::file`], whatever that holds.
+///
+/// What is kept of another build, of other simplices or with other options or resources, is refused, and stays. What is kept
+/// of this one stays too, until [`Kept::finish`] is called, or its data are damaged, or it ends with another error than
+/// [`Error::Io`].
 ///
 /// # Errors
-/// [`Error`]; what `file` holds then is of no use.
+/// [`Error`]; what `file` holds then is of no use, but for another process with the same [`Resources::kept`].
 pub fn build_to_file(
     soup: Soup,
     spill: Spill,
@@ -200,6 +265,24 @@ impl Listed<'_> {
 }
 
 fn build_in_pieces(
+    soup: Soup,
+    spill: Spill,
+    options: &BuildOptions<'_>,
+    encode: &EncodeOptions<'_>,
+    resources: Resources<'_>,
+    cut: &Cut<'_>,
+    file: &File,
+) -> Result<Outcome, Error> {
+    let built = build(soup, spill, options, encode, resources, cut, file);
+    if let (Err(error), Some(kept)) = (&built, resources.kept)
+        && !matches!(error, Error::Io(error) if error.kind() != io::ErrorKind::InvalidData)
+    {
+        kept.give_up();
+    }
+    built
+}
+
+fn build(
     mut soup: Soup,
     spill: Spill,
     options: &BuildOptions<'_>,
@@ -223,15 +306,20 @@ fn build_in_pieces(
     }
     let Soup { labels, declared, coordinates, .. } = soup;
     let meter = Meter::new(options.progress);
-    let used = check(&spill, labels.len())?;
+    let mut fingerprint = resources.kept.map(|_| Fingerprint::new(&labels, declared, coordinates.as_ref()));
+    let used = check(&spill, labels.len(), fingerprint.as_mut())?;
+    let mut past = match (resources.kept, fingerprint) {
+        (Some(kept), Some(fingerprint)) => kept.begin(fingerprint.key(&spill, options, encode, resources))?,
+        _ => Past::default(),
+    };
     let keep_unused = declared && options.unused == Unused::Keep;
     let order = number_vertices(&labels, coordinates.as_ref(), &[], &used, keep_unused, options.order)?;
     drop(used);
     let num_unused = order.num_unused;
-    let listed: usize = spill.counts().iter().sum();
+    let listed = spill.counts().iter().sum();
     let Pieces { ranges, words, counted, borders, needed } =
-        Pieces::count(&Listed { spill: &spill, order: &order }, resources, cut, &meter)?;
-    let temporary_bytes = spill.bytes() + words.spool.bytes() + borders.bytes();
+        Pieces::count(&Listed { spill: &spill, order: &order }, resources, cut, &mut past, &meter)?;
+    let temporary_bytes = spill.bytes() + words.bytes() + borders.bytes();
     drop(spill);
     let first_unused = order.name_unused(&labels, declared);
     let (labels, coordinates) = order.permute(labels, coordinates);
@@ -240,30 +328,28 @@ fn build_in_pieces(
     if let Some(limit) = options.max_simplices.filter(|&limit| whole.num_simplices as u64 > limit) {
         return Err(BuildError::TooLarge { at_least: whole.num_simplices as u64, limit }.into());
     }
-    let mut report = BuildReport {
-        listed,
+    let report = BuildReport {
         unused_kept: if keep_unused { num_unused } else { 0 },
         unused_dropped: if keep_unused || !declared { 0 } else { num_unused },
         first_unused,
-        top_simplices: vec![0; whole.first.len()],
-        ..BuildReport::default()
+        ..report(listed, &counted, whole.first.len())
     };
-    let mut distinct_listed = 0;
-    for counts in counted.iter().map(|counted| &counted.report) {
-        distinct_listed += counts.distinct_listed;
-        report.non_maximal += counts.non_maximal;
-        report.conflicting += counts.conflicting;
-        report.top_simplices.iter_mut().zip(&counts.top_simplices).for_each(|(all, more)| *all += more);
-    }
-    report.repeated = listed - distinct_listed;
     let (output, width, file_bytes) = whole.begin(file, &labels, coordinates.as_ref(), encode)?;
     let stage = meter.stage(Phase::Write, labels.len());
     drop((labels, coordinates));
     for_each_piece(ranges.len(), |number| {
         let range = ranges.get(number);
-        let piece = Piece::build(&range, words.of(number)?, u64::from(u32::MAX))?;
-        let writer = Writer::new((&piece, number), &ranges, (&whole, &output), (&borders, &needed[number]))?;
-        writer.write()?;
+        let written = match past.written.get(&number).filter(|_| !output.is_new) {
+            Some(written) => written.clone(),
+            None => {
+                let piece = Piece::build(&range, words.of(number)?, u64::from(u32::MAX))?;
+                let writer = Writer::new((&piece, number), &ranges, (&whole, &output), (&borders, &needed[number]))?;
+                let written = writer.write()?;
+                resources.record(&Record::Written(number, Cow::Borrowed(&written)))?;
+                written
+            }
+        };
+        output.add(written);
         stage.add(range.len());
         Ok::<(), Error>(())
     })?;
@@ -271,11 +357,26 @@ fn build_in_pieces(
     Ok(Outcome { report, simplices: whole.counts(), width, file_bytes, pieces: ranges.len(), temporary_bytes })
 }
 
-/// Checks the listed simplices; tells which of `count` vertices they use.
-fn check(spill: &Spill, count: usize) -> Result<Vec<bool>, Error> {
+/// What the pieces of a complex with `dims` dimensions tell of the `listed` simplices.
+fn report(listed: usize, pieces: &[Counted], dims: usize) -> BuildReport {
+    let mut report = BuildReport { listed, repeated: listed, top_simplices: vec![0; dims], ..BuildReport::default() };
+    for counts in pieces.iter().map(|piece| &piece.report) {
+        report.repeated -= counts.distinct_listed;
+        report.non_maximal += counts.non_maximal;
+        report.conflicting += counts.conflicting;
+        report.top_simplices.iter_mut().zip(&counts.top_simplices).for_each(|(all, more)| *all += more);
+    }
+    report
+}
+
+/// Checks the listed simplices, and takes their fingerprint; tells which of `count` vertices they use.
+fn check(spill: &Spill, count: usize, mut fingerprint: Option<&mut Fingerprint>) -> Result<Vec<bool>, Error> {
     let mut used = words::check(&[], count)?;
     let mut before: Vec<usize> = Vec::new();
     spill.try_for_each(|dim, rows| {
+        if let Some(fingerprint) = &mut fingerprint {
+            fingerprint.simplices.write(bytemuck::cast_slice(rows));
+        }
         before.resize(before.len().max(dim + 1), 0);
         for row in rows.chunks_exact(dim + 1) {
             let index = before[dim];
@@ -293,130 +394,6 @@ fn check(spill: &Spill, count: usize) -> Result<Vec<bool>, Error> {
         Ok::<(), Error>(())
     })?;
     Ok(used)
-}
-
-/// The listed simplices of each piece, on disk.
-struct Words {
-    spool: Spool,
-    /// By piece and dimension.
-    rows: Vec<Vec<Rows>>,
-}
-
-impl Words {
-    /// Deals the listed simplices out to the ranges that have a vertex of them.
-    fn new(listed: &Listed<'_>, ranges: &Ranges, resources: Resources<'_>, stage: &Stage<'_>) -> Result<Self, Error> {
-        let spool = Spool::new_in(resources.directory)?;
-        let dims = listed.spill.dim().map_or(0, |dim| dim + 1);
-        let mut rows: Vec<Vec<Rows>> =
-            (0..ranges.len()).map(|_| (0..dims).map(|_| Rows::default()).collect()).collect();
-        // A sixteenth of the memory, in numbers, for all streams together.
-        let most = resources.memory / 64 / (ranges.len() * dims).max(1) as u64;
-        let most = usize::try_from(most.clamp(64, 1 << 16)).unwrap_or(1 << 16);
-        let mut pieces = Vec::with_capacity(MAX_DIM + 1);
-        let mut dealt = 0;
-        listed.try_for_each(|dim, word| {
-            pieces.clear();
-            for &vertex in word {
-                let piece = ranges.of(vertex);
-                if !pieces.contains(&piece) {
-                    pieces.push(piece);
-                    rows[piece][dim].push(&spool, word, most)?;
-                }
-            }
-            dealt += 1;
-            if dealt % (1 << 16) == 0 {
-                stage.add(1 << 16);
-            }
-            Ok(())
-        })?;
-        rows.iter_mut().flatten().try_for_each(|rows| rows.flush(&spool))?;
-        Ok(Self { spool, rows })
-    }
-
-    /// Those of one piece, by dimension.
-    fn of(&self, piece: usize) -> io::Result<Vec<Vec<u32>>> {
-        let read = |rows: &Rows| {
-            let mut numbers = Vec::with_capacity(rows.runs().iter().map(|run| run.len).sum());
-            rows.runs().iter().try_for_each(|&run| self.spool.read(run, &mut numbers))?;
-            Ok(numbers)
-        };
-        self.rows[piece].iter().map(read).collect()
-    }
-}
-
-/// All pieces, counted.
-struct Pieces {
-    ranges: Ranges,
-    words: Words,
-    counted: Vec<Counted>,
-    /// The numbers of simplices that pieces need of others, and where they are for each piece.
-    borders: Spool,
-    needed: Vec<Vec<Needed>>,
-}
-
-impl Pieces {
-    /// Cuts the complex into pieces that fit, and counts them.
-    fn count(listed: &Listed<'_>, resources: Resources<'_>, cut: &Cut<'_>, meter: &Meter<'_>) -> Result<Self, Error> {
-        let bytes = match *cut {
-            Cut::At(starts) => {
-                let ranges = Ranges::new(starts.to_vec());
-                return Self::of_ranges(listed, resources, ranges, u64::from(u32::MAX), meter)
-                    .map_err(|(_, error)| error);
-            }
-            Cut::ToFit(bytes) => bytes / PEAK,
-        };
-        let mut survey = Survey::new(listed, bytes)?;
-        let limit = survey.simplices(bytes);
-        loop {
-            let ranges = survey.cut(bytes / 4 * 3);
-            match Self::of_ranges(listed, resources, ranges, limit, meter) {
-                Ok(pieces) => return Ok(pieces),
-                // The samples promised less.
-                Err((range, Error::Build(BuildError::TooLarge { .. }))) if range.len() > 1 => survey.be_careful(2.0),
-                Err((range, Error::Build(BuildError::TooLarge { at_least, limit }))) => {
-                    return Err(Error::Star { vertex: range.start, at_least, limit });
-                }
-                Err((_, error)) => return Err(error),
-            }
-        }
-    }
-
-    /// Counts the pieces of the ranges; the error of a piece with its range.
-    fn of_ranges(
-        listed: &Listed<'_>,
-        resources: Resources<'_>,
-        ranges: Ranges,
-        limit: u64,
-        meter: &Meter<'_>,
-    ) -> Result<Self, (Range<u32>, Error)> {
-        let of_none = |error: Error| (0..0, error);
-        let num_listed = listed.spill.counts().iter().sum();
-        let words =
-            Words::new(listed, &ranges, resources, &meter.stage(Phase::Distribution, num_listed)).map_err(of_none)?;
-        let borders = Spool::new_in(resources.directory).map_err(|error| of_none(error.into()))?;
-        let needed: Mutex<Vec<Vec<Needed>>> = Mutex::new(vec![Vec::new(); ranges.len()]);
-        let stage = meter.stage(Phase::Count, listed.order.num_vertices());
-        let count = |number: usize| {
-            let range = ranges.get(number);
-            let piece = Piece::build(&range, words.of(number)?, limit)?;
-            let shared = piece.shared(number, &ranges);
-            let numbers: Vec<u32> = shared.iter().map(|&key| piece::unpack(key).2).collect();
-            let all = borders.append(&numbers)?;
-            let mut start = 0;
-            for run in shared.chunk_by(|&a, &b| a >> 32 == b >> 32) {
-                let (user, dim, _) = piece::unpack(run[0]);
-                let mut needed = needed.lock().unwrap_or_else(PoisonError::into_inner);
-                needed[user].push((number, dim, all.part(start..start + run.len())));
-                start += run.len();
-            }
-            stage.add(range.len());
-            Ok(piece.count())
-        };
-        let counted = for_each_piece(ranges.len(), |number| count(number).map_err(|error| (ranges.get(number), error)));
-        let counted = counted?;
-        let needed = needed.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Ok(Self { ranges, words, counted, borders, needed })
-    }
 }
 
 /// Does some work for each of `count` pieces: one at a time on each thread, so that no more are in memory, and what the

@@ -1,5 +1,6 @@
 //! The file, written in any order by any thread: runs of numbers or bits into its sections, and what checks them.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io;
@@ -7,9 +8,10 @@ use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crc32fast::Hasher;
+use serde::{Deserialize, Serialize};
 use sig_core::format::{CHECKSUM_BLOCK_BYTES, Column, Encoder, SectionKind};
 
-use crate::spool::write_at;
+use crate::spool::{changed, write_at};
 use crate::store::crc32;
 
 /// Bytes that a run keeps before it writes them.
@@ -17,11 +19,14 @@ const BUFFER: usize = 1 << 18;
 
 /// A file whose sections have their places.
 pub(super) struct Output<'a> {
-    file: Mutex<&'a File>,
+    file: &'a File,
+    /// Whose turn it is to write.
+    turn: Mutex<()>,
     places: Vec<Place>,
     checksums: bool,
-    /// Bytes that several runs of bits share, by place in the file.
-    shared: Mutex<BTreeMap<u64, u8>>,
+    /// Whether nothing of it was written by an earlier process.
+    pub(super) is_new: bool,
+    written: Mutex<Written>,
 }
 
 /// A section, and the bytes of the file that it takes.
@@ -30,8 +35,21 @@ struct Place {
     range: Range<u64>,
     /// Bytes of an element, 1 of bits.
     width: usize,
-    /// Where in the file each part written starts, how many bytes it has, and its checksum; no part is in two blocks.
-    parts: Mutex<Vec<(u64, u64, u32)>>,
+}
+
+/// What was written, as far as it has to be known at the end.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub(super) struct Written {
+    /// Where in the file each part starts, how many bytes it has, and its checksum; no part is in two blocks.
+    parts: Vec<(u64, u64, u32)>,
+    /// Bytes that several runs of bits share, by place in the file.
+    shared: Vec<(u64, u8)>,
+}
+
+/// Who writes some part of the file, on one thread.
+pub(super) struct Pen<'a> {
+    output: &'a Output<'a>,
+    written: RefCell<Written>,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -46,38 +64,109 @@ impl<'a> Output<'a> {
         checksums: bool,
         width: impl Fn(SectionKind) -> usize,
     ) -> io::Result<Self> {
-        // What nobody writes is padding, and zero.
-        file.set_len(encoder.file_bytes())?;
+        let is_new = file.metadata()?.len() != encoder.file_bytes();
+        if is_new {
+            // What nobody writes is padding, and zero.
+            file.set_len(0)?;
+            file.set_len(encoder.file_bytes())?;
+        }
         let mut header = Vec::new();
         encoder.write_header(|piece| {
             header.extend_from_slice(piece);
             Ok::<(), io::Error>(())
         })?;
         write_at(file, 0, &header)?;
-        let place = |(kind, range)| Place { kind, range, width: width(kind), parts: Mutex::default() };
+        let place = |(kind, range)| Place { kind, range, width: width(kind) };
         let places = encoder.places().map(place).collect();
-        Ok(Self { file: Mutex::new(file), places, checksums, shared: Mutex::default() })
+        Ok(Self { file, turn: Mutex::new(()), places, checksums, is_new, written: Mutex::default() })
+    }
+
+    /// One who writes into it.
+    pub(super) fn pen(&'a self) -> Pen<'a> {
+        Pen { output: self, written: RefCell::default() }
+    }
+
+    /// Takes note of what was written, by a pen of this or of an earlier process.
+    pub(super) fn add(&self, written: Written) {
+        let mut all = lock(&self.written);
+        all.parts.extend(written.parts);
+        all.shared.extend(written.shared);
+    }
+
+    /// Writes what is left: the bytes that runs of bits share, and the checksums.
+    pub(super) fn finish(&self) -> io::Result<()> {
+        let Written { mut parts, shared } = std::mem::take(&mut *lock(&self.written));
+        let mut bytes = BTreeMap::new();
+        shared.into_iter().for_each(|(start, byte)| *bytes.entry(start).or_insert(0) |= byte);
+        let pen = self.pen();
+        for (start, byte) in bytes {
+            if let Some(place) = self.places.iter().find(|place| place.range.contains(&start)) {
+                pen.write(place, start, &[byte])?;
+            }
+        }
+        if !self.checksums {
+            return Ok(());
+        }
+        parts.extend(std::mem::take(&mut pen.written.borrow_mut().parts));
+        parts.sort_unstable();
+        let mut run = pen.numbers(SectionKind::Checksums, 0);
+        let mut total = 0;
+        for place in self.places.iter().filter(|place| place.kind != SectionKind::Checksums) {
+            for checksum in place.checksums(&parts) {
+                total = crc32(total, &checksum.to_le_bytes());
+                run.push(checksum.into())?;
+            }
+        }
+        run.push(total.into())?;
+        run.finish()
+    }
+}
+
+impl Place {
+    /// The checksums of the blocks, from those of the parts of the file, which are in order.
+    fn checksums(&self, parts: &[(u64, u64, u32)]) -> Vec<u32> {
+        let [first, end] = [self.range.start, self.range.end].map(|at| parts.partition_point(|part| part.0 < at));
+        let block = |start: u64| (start - self.range.start) / CHECKSUM_BLOCK_BYTES as u64;
+        let of_block = |parts: &[(u64, u64, u32)]| {
+            let mut hasher = Hasher::new();
+            for &(_, len, checksum) in parts {
+                hasher.combine(&Hasher::new_with_initial_len(checksum, len));
+            }
+            hasher.finalize()
+        };
+        parts[first..end].chunk_by(|a, b| block(a.0) == block(b.0)).map(of_block).collect()
+    }
+}
+
+impl Pen<'_> {
+    /// What was written by it.
+    pub(super) fn end(self) -> Written {
+        self.written.into_inner()
     }
 
     /// Where a section is; `None` if the file does not have it.
     fn place(&self, kind: SectionKind) -> Option<&Place> {
-        self.places.iter().find(|place| place.kind == kind)
+        self.output.places.iter().find(|place| place.kind == kind)
     }
 
     /// Writes bytes of a section at a place in the file.
     fn write(&self, place: &Place, start: u64, bytes: &[u8]) -> io::Result<()> {
         if start < place.range.start || start + bytes.len() as u64 > place.range.end {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "temporary data were changed by another program"));
+            return Err(changed());
         }
-        write_at(&lock(&self.file), start, bytes)?;
-        if self.checksums {
+        {
+            let _turn = lock(&self.output.turn);
+            write_at(self.output.file, start, bytes)?;
+        }
+        if self.output.checksums {
             let block = CHECKSUM_BLOCK_BYTES as u64;
+            let parts = &mut self.written.borrow_mut().parts;
             let (mut start, mut bytes) = (start, bytes);
             while !bytes.is_empty() {
                 let room = block - (start - place.range.start) % block;
                 let len = usize::try_from(room).map_or(bytes.len(), |room| room.min(bytes.len()));
                 let (part, rest) = bytes.split_at(len);
-                lock(&place.parts).push((start, len as u64, crc32(0, part)));
+                parts.push((start, len as u64, crc32(0, part)));
                 start += len as u64;
                 bytes = rest;
             }
@@ -86,14 +175,14 @@ impl<'a> Output<'a> {
     }
 
     /// A run of numbers from element `first` of a section on; they go nowhere if the file does not have it.
-    pub(super) fn numbers(&self, kind: SectionKind, first: usize) -> Numbers<'_, 'a> {
+    pub(super) fn numbers(&self, kind: SectionKind, first: usize) -> Numbers<'_> {
         let place = self.place(kind);
         let at = place.map_or(0, |place| place.range.start + (first * place.width) as u64);
-        Numbers { output: self, place, at, buffer: Vec::new() }
+        Numbers { pen: self, place, at, buffer: Vec::new() }
     }
 
     /// A run of bits from bit `first` of a section on.
-    pub(super) fn bits(&self, kind: SectionKind, first: usize) -> Bits<'_, 'a> {
+    pub(super) fn bits(&self, kind: SectionKind, first: usize) -> Bits<'_> {
         let start = self.place(kind).map_or(0, |place| place.range.start) + first as u64 / 8;
         Bits { bytes: self.numbers(kind, first.div_ceil(8)), shared: start, byte: 0, from: first % 8, next: first % 8 }
     }
@@ -115,56 +204,17 @@ impl<'a> Output<'a> {
         }
         run.finish()
     }
-
-    /// Writes what is left: the bytes that runs of bits share, and the checksums.
-    pub(super) fn finish(self) -> io::Result<()> {
-        for (start, byte) in std::mem::take(&mut *lock(&self.shared)) {
-            if let Some(place) = self.places.iter().find(|place| place.range.contains(&start)) {
-                self.write(place, start, &[byte])?;
-            }
-        }
-        if !self.checksums {
-            return Ok(());
-        }
-        let mut run = self.numbers(SectionKind::Checksums, 0);
-        let mut total = 0;
-        for place in self.places.iter().filter(|place| place.kind != SectionKind::Checksums) {
-            for checksum in place.checksums() {
-                total = crc32(total, &checksum.to_le_bytes());
-                run.push(checksum.into())?;
-            }
-        }
-        run.push(total.into())?;
-        run.finish()
-    }
-}
-
-impl Place {
-    /// The checksums of the blocks, from those of their parts.
-    fn checksums(&self) -> Vec<u32> {
-        let mut parts = std::mem::take(&mut *lock(&self.parts));
-        parts.sort_unstable();
-        let block = |start: u64| (start - self.range.start) / CHECKSUM_BLOCK_BYTES as u64;
-        let of_block = |parts: &[(u64, u64, u32)]| {
-            let mut hasher = Hasher::new();
-            for &(_, len, checksum) in parts {
-                hasher.combine(&Hasher::new_with_initial_len(checksum, len));
-            }
-            hasher.finalize()
-        };
-        parts.chunk_by(|a, b| block(a.0) == block(b.0)).map(of_block).collect()
-    }
 }
 
 /// A run of numbers.
-pub(super) struct Numbers<'o, 'a> {
-    output: &'o Output<'a>,
-    place: Option<&'o Place>,
+pub(super) struct Numbers<'a> {
+    pen: &'a Pen<'a>,
+    place: Option<&'a Place>,
     at: u64,
     buffer: Vec<u8>,
 }
 
-impl Numbers<'_, '_> {
+impl Numbers<'_> {
     /// Writes one at the width of the section: its lower bytes.
     #[inline]
     pub(super) fn push(&mut self, value: u64) -> io::Result<()> {
@@ -177,7 +227,7 @@ impl Numbers<'_, '_> {
         if let Some(place) = self.place
             && !self.buffer.is_empty()
         {
-            self.output.write(place, self.at, &self.buffer)?;
+            self.pen.write(place, self.at, &self.buffer)?;
             self.at += self.buffer.len() as u64;
             self.buffer.clear();
         }
@@ -191,9 +241,9 @@ impl Numbers<'_, '_> {
 }
 
 /// A run of bits. Its first and its last byte may be shared with others.
-pub(super) struct Bits<'o, 'a> {
+pub(super) struct Bits<'a> {
     /// The bytes that are all of this run.
-    bytes: Numbers<'o, 'a>,
+    bytes: Numbers<'a>,
     /// Where the first byte is in the file, for the bytes that are not.
     shared: u64,
     byte: u8,
@@ -202,7 +252,7 @@ pub(super) struct Bits<'o, 'a> {
     next: usize,
 }
 
-impl Bits<'_, '_> {
+impl Bits<'_> {
     pub(super) fn push(&mut self, bit: bool) -> io::Result<()> {
         self.byte |= u8::from(bit) << self.next;
         self.next += 1;
@@ -214,7 +264,7 @@ impl Bits<'_, '_> {
             if (self.from, self.next) == (0, 8) {
                 self.bytes.push(self.byte.into())?;
             } else if self.from < self.next {
-                *lock(&self.bytes.output.shared).entry(self.shared).or_insert(0) |= self.byte;
+                self.bytes.pen.written.borrow_mut().shared.push((self.shared, self.byte));
             }
         }
         self.shared += 1;

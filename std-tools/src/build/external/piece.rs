@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
 use sig_core::{Dim, Index};
 
 use super::plan::Ranges;
@@ -218,6 +219,7 @@ pub(super) fn unpack(key: u64) -> (usize, Dim, u32) {
 }
 
 /// What the whole has to know of a piece.
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Counted {
     /// Owned simplices of each dimension.
     pub(super) simplices: Vec<usize>,

@@ -41,6 +41,11 @@ impl Ranges {
         Self { starts, hints }
     }
 
+    /// Where each starts, and the end.
+    pub(super) fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
     /// How many there are.
     pub(super) fn len(&self) -> usize {
         self.starts.len().saturating_sub(1)

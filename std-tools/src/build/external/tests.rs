@@ -1,5 +1,7 @@
 //! The bytes are those of the builder in memory, however the complex is cut.
 
+mod kept;
+
 use std::fs;
 use std::io::{Read, Seek};
 
@@ -27,7 +29,7 @@ fn in_pieces(
     cut: &Cut<'_>,
 ) -> Result<(Vec<u8>, Outcome), Error> {
     let directory = tempfile::tempdir().unwrap();
-    let resources = Resources { memory: 1 << 20, directory: directory.path() };
+    let resources = Resources { memory: 1 << 20, directory: directory.path(), kept: None };
     let mut file = tempfile::tempfile().unwrap();
     let spill = Spill::new_in(directory.path()).unwrap();
     let outcome = build_in_pieces(soup.clone(), spill, options, encode, resources, cut, &file)?;
@@ -201,7 +203,7 @@ fn a_star_that_does_not_fit_is_refused() {
 fn memory_that_does_not_hold_the_vertices_is_too_little() {
     let directory = tempfile::tempdir().unwrap();
     let soup = Soup::new(Labels::Numbered(10_000_000), true);
-    let resources = Resources { memory: 64 << 20, directory: directory.path() };
+    let resources = Resources { memory: 64 << 20, directory: directory.path(), kept: None };
     let (spill, file) = (Spill::new_in(directory.path()).unwrap(), tempfile::tempfile().unwrap());
     let error = build_to_file(soup, spill, &BuildOptions::default(), &EncodeOptions::default(), resources, &file);
     assert!(matches!(error.expect_err("too little"), Error::Vertices { vertices: 10_000_000, .. }));

@@ -8,7 +8,7 @@ use sig_core::format::{Column, Encoder, Kind, Section, SectionKind};
 use sig_core::{Dim, IndexWidth};
 
 use super::Error;
-use super::output::Output;
+use super::output::{Output, Pen};
 use super::piece::Counted;
 use crate::soup::{Coordinates, Labels};
 use crate::store::{
@@ -117,9 +117,12 @@ impl Whole {
         };
         let output = Output::new(file, &encoder, options.checksums, element)?;
         let lookup: Vec<u64> = self.first.iter().map(|&first| first as u64).collect();
-        output.column(SectionKind::Lookup, &Column::U64(&lookup))?;
-        known.iter().try_for_each(|section| output.column(section.kind, &section.column))?;
-        self.end_offsets(&output)?;
+        let pen = output.pen();
+        pen.column(SectionKind::Lookup, &Column::U64(&lookup))?;
+        known.iter().try_for_each(|section| pen.column(section.kind, &section.column))?;
+        self.end_offsets(&pen)?;
+        let written = pen.end();
+        output.add(written);
         Ok((output, width, encoder.file_bytes()))
     }
 
@@ -152,14 +155,14 @@ impl Whole {
     }
 
     /// Writes the last entries of the offsets, which are of no piece.
-    fn end_offsets(&self, output: &Output<'_>) -> io::Result<()> {
+    fn end_offsets(&self, pen: &Pen<'_>) -> io::Result<()> {
         if let Some(&below) = self.first.last() {
-            let mut run = output.numbers(SectionKind::ChildOffsets, below);
+            let mut run = pen.numbers(SectionKind::ChildOffsets, below);
             run.push(self.num_simplices as u64)?;
             run.finish()?;
         }
         let counts = self.counts();
-        let mut run = output.numbers(SectionKind::LowerOffsets, counts.first().copied().unwrap_or(0));
+        let mut run = pen.numbers(SectionKind::LowerOffsets, counts.first().copied().unwrap_or(0));
         run.push(counts.get(1).copied().unwrap_or(0) as u64)?;
         run.finish()
     }

@@ -6,32 +6,32 @@ use std::io;
 use sig_core::format::SectionKind;
 use sig_core::{Dim, Index};
 
-use super::output::Output;
+use super::output::{Output, Pen, Written};
 use super::piece::Piece;
 use super::plan::Ranges;
 use super::whole::Whole;
 use crate::build::report::Counts;
-use crate::spool::{Run, Spool};
+use crate::spool::{Run, Spool, changed};
 
 /// The numbers of simplices that one piece owns and another needs: who owns them, their dimension, and where they are.
 pub(super) type Needed = (usize, Dim, Run);
 
 /// A piece, and what it takes to write it.
-pub(super) struct Writer<'a, 'f> {
+pub(super) struct Writer<'a> {
     piece: &'a Piece,
     me: usize,
     whole: &'a Whole,
-    output: &'a Output<'f>,
+    pen: Pen<'a>,
     /// The ids in the whole of those simplices of the piece that are owned or needed.
     ids: Vec<u64>,
 }
 
-impl<'a, 'f> Writer<'a, 'f> {
+impl<'a> Writer<'a> {
     /// Finds the ids of what other pieces own: `needed` are those numbers, in order for each owner and dimension.
     pub(super) fn new(
         (piece, me): (&'a Piece, usize),
         ranges: &Ranges,
-        (whole, output): (&'a Whole, &'a Output<'f>),
+        (whole, output): (&'a Whole, &'a Output<'a>),
         (spool, needed): (&Spool, &[Needed]),
     ) -> io::Result<Self> {
         let mut numbers = HashMap::new();
@@ -82,11 +82,11 @@ impl<'a, 'f> Writer<'a, 'f> {
         if numbers.values().any(|left| left.len() > 0) {
             return Err(changed());
         }
-        Ok(Self { piece, me, whole, output, ids })
+        Ok(Self { piece, me, whole, pen: output.pen(), ids })
     }
 
     /// Writes everything.
-    pub(super) fn write(&self) -> io::Result<()> {
+    pub(super) fn write(self) -> io::Result<Written> {
         for dim in 0..=self.piece.dim() {
             self.write_faces(dim)?;
             if dim + 1 < self.whole.first.len() {
@@ -94,16 +94,17 @@ impl<'a, 'f> Writer<'a, 'f> {
             }
         }
         self.write_parity()?;
-        self.write_lower_neighbours()
+        self.write_lower_neighbours()?;
+        Ok(self.pen.end())
     }
 
     /// The boundary relations, child offsets and last vertices of one dimension.
     fn write_faces(&self, dim: Dim) -> io::Result<()> {
-        let Self { piece, whole, output, .. } = self;
+        let Self { piece, whole, pen, .. } = self;
         let (owned, start) = (piece.owned[dim].clone(), whole.ids[self.me][dim]);
         if dim > 0 {
             let row = whole.rows(dim) + (start - whole.first[dim]) * (dim + 1);
-            let mut run = output.numbers(SectionKind::Boundary, row);
+            let mut run = pen.numbers(SectionKind::Boundary, row);
             let rows = piece.arrays.facets(dim);
             let first = piece.arrays.first[dim];
             for &facet in &rows[(owned.start - first) * (dim + 1)..(owned.end - first) * (dim + 1)] {
@@ -112,7 +113,7 @@ impl<'a, 'f> Writer<'a, 'f> {
             run.finish()?;
         }
         if dim + 1 < whole.first.len() {
-            let mut run = output.numbers(SectionKind::ChildOffsets, start);
+            let mut run = pen.numbers(SectionKind::ChildOffsets, start);
             let child = whole.ids[self.me][dim + 1];
             for id in owned.clone() {
                 let before = match piece.owned.get(dim + 1) {
@@ -123,7 +124,7 @@ impl<'a, 'f> Writer<'a, 'f> {
             }
             run.finish()?;
         }
-        let mut run = output.numbers(SectionKind::LastVertices, start);
+        let mut run = pen.numbers(SectionKind::LastVertices, start);
         for &last in &piece.arrays.last_vertices[owned] {
             run.push(piece.vertices[last as usize].into())?;
         }
@@ -132,12 +133,12 @@ impl<'a, 'f> Writer<'a, 'f> {
 
     /// Pointers, lists and flags of one dimension below that of the whole.
     fn write_lists(&self, dim: Dim) -> io::Result<()> {
-        let Self { piece, whole, output, .. } = self;
+        let Self { piece, whole, pen, .. } = self;
         let start = whole.ids[self.me][dim];
         let mut offset = whole.lists[self.me][dim];
-        let mut pointers = output.numbers(SectionKind::Pointers, start);
-        let mut lists = output.numbers(SectionKind::Lists, offset);
-        let mut flags = output.bits(SectionKind::Flags, start);
+        let mut pointers = pen.numbers(SectionKind::Pointers, start);
+        let mut lists = pen.numbers(SectionKind::Lists, offset);
+        let mut flags = pen.bits(SectionKind::Flags, start);
         let is_below = dim < piece.dim();
         // Only here are the largest simplices those of the largest dimension.
         let is_flaggable = dim + 2 < whole.first.len() && piece.dim() + 1 == whole.first.len();
@@ -167,7 +168,7 @@ impl<'a, 'f> Writer<'a, 'f> {
         let mut written = Ok(());
         let mut counts = Counts { top_simplices: vec![0; self.piece.owned.len()], ..Counts::default() };
         self.piece.for_each_listed(|dim, marks, is_top| {
-            let mut run = self.output.bits(SectionKind::Parity, self.whole.tops[self.me][dim]);
+            let mut run = self.pen.bits(SectionKind::Parity, self.whole.tops[self.me][dim]);
             let mut result = Ok(());
             counts.add(dim, marks, is_top, |is_odd| {
                 if result.is_ok() {
@@ -185,16 +186,11 @@ impl<'a, 'f> Writer<'a, 'f> {
     fn write_lower_neighbours(&self) -> io::Result<()> {
         let (vertices, first) = (self.whole.ids[self.me][0], self.whole.lower[self.me]);
         let (starts, neighbours) = self.piece.lower_neighbours();
-        let mut run = self.output.numbers(SectionKind::LowerOffsets, vertices);
+        let mut run = self.pen.numbers(SectionKind::LowerOffsets, vertices);
         starts[..self.piece.owned[0].len()].iter().try_for_each(|&start| run.push((first + start) as u64))?;
         run.finish()?;
-        let mut run = self.output.numbers(SectionKind::LowerNeighbours, first);
+        let mut run = self.pen.numbers(SectionKind::LowerNeighbours, first);
         neighbours.iter().try_for_each(|&vertex| run.push(vertex.into()))?;
         run.finish()
     }
-}
-
-/// Two pieces disagree on what they share.
-fn changed() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, "temporary data were changed by another program")
 }
