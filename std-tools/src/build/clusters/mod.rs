@@ -3,16 +3,16 @@
 //! C\*(σ) names one top simplex of each cluster in the restricted star of σ (sig-2004, 4.1): the top g-simplices that
 //! contain σ, joined where they share a (g − 1)-simplex that properly contains σ. The paper walks the star of every σ
 //! ([`crate::incidence_graph`]). Here are two ways that do less: `minima` sees for nearly all simplices of a mesh
-//! without a walk that there is one cluster, and walks the stars of the others; `union` goes from dimension to dimension
+//! without a walk that there is one cluster, and `walk` walks the stars of the others; `union` goes from dimension to dimension
 //! and never looks at a star.
 
 mod minima;
 mod sets;
 mod union;
+mod walk;
 
 pub(super) use sets::Cell;
 
-use crate::build::blocks::Blocks;
 use crate::build::cofaces::{self, Cofacets};
 use crate::build::limits::Stage;
 use crate::build::lists::pack_below_facets;
@@ -56,10 +56,8 @@ where
     Arrays: From<SigArrays<I>>,
 {
     let Some(dim @ 1..) = arrays.dim() else { return pack_below_facets(arrays, Cofacets::default(), |_, _| {}) };
-    let blocks = Blocks::new(&arrays);
-    let relations = union::find(&arrays, &blocks, stage);
-    let cofacets = cofaces::find(&arrays, &blocks, dim, None);
-    drop(blocks);
+    let relations = union::find(&arrays, stage);
+    let (cofacets, _) = cofaces::find(&arrays, dim, || (), |(), _, _| {});
     let first = arrays.first.clone();
     pack_below_facets(arrays, cofacets, |ids, part| union::write(&relations, &first, ids, part))
 }

@@ -20,7 +20,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use sig_core::{Dim, Index};
 
-use crate::build::blocks::Blocks;
 use crate::build::clusters::sets::{Cell, Sets};
 use crate::build::limits::Stage;
 use crate::build::lists::Part;
@@ -30,10 +29,10 @@ use crate::build::{SigArrays, cofaces, index};
 const TASK: usize = 1 << 13;
 
 /// The relations of the dimensions 0, 1, …, d − 2. In dimension d − 1 they are the cofacets.
-pub(super) fn find<I: Cell>(arrays: &SigArrays<I>, blocks: &Blocks<I>, stage: &Stage<'_>) -> Vec<Relations<I>> {
+pub(super) fn find<I: Cell>(arrays: &SigArrays<I>, stage: &Stage<'_>) -> Vec<Relations<I>> {
     let Some(dim) = arrays.dim().filter(|&dim| dim > 0) else { return Vec::new() };
     // From dimension d downwards. The cofacets of a (d − 1)-simplex are of dimension d, and count as one cluster.
-    let mut levels = vec![Clusters::one_each(Vec::new()), Clusters::one_each(cofaces::least(arrays, blocks, dim))];
+    let mut levels = vec![Clusters::one_each(Vec::new()), Clusters::one_each(cofaces::least(arrays, dim))];
     stage.add(1);
     let mut up = Up::Zero;
     for p in (0..dim - 1).rev() {
