@@ -56,14 +56,7 @@ where
         .into_par_iter()
         .map(|task| {
             let range = task * TASK..count.min((task + 1) * TASK);
-            let mut part = Part {
-                next: range.start,
-                flaggable,
-                top_start,
-                pointers: Vec::with_capacity(range.len()),
-                lists: Vec::new(),
-                flags: vec![0; range.len().div_ceil(8)],
-            };
+            let mut part = Part::new(range.clone(), flaggable, top_start);
             write(range, &mut part);
             part
         })
@@ -76,36 +69,52 @@ where
     }
 }
 
-/// The pointers, lists and flags of a range of simplices.
+/// The lists and flags of a range of simplices. Where a list starts is told by the flags and the stop codes.
 pub(crate) struct Part<I> {
+    range: Range<usize>,
     /// The simplex whose list comes next.
     next: usize,
     /// Where the simplices start that are not flagged.
     flaggable: usize,
     /// Where the simplices of dimension d start.
     top_start: usize,
-    /// The top simplex of a flagged simplex, else the offset in `lists`.
-    pointers: Vec<usize>,
+    /// The top simplices of the flagged ones.
+    tops: Vec<I>,
     lists: Vec<I>,
     flags: Vec<u8>,
 }
 
 impl<I: Index> Part<I> {
+    fn new(range: Range<usize>, flaggable: usize, top_start: usize) -> Self {
+        Self {
+            next: range.start,
+            flaggable,
+            top_start,
+            tops: Vec::with_capacity(range.len()),
+            lists: Vec::new(),
+            flags: vec![0; range.len().div_ceil(8)],
+            range,
+        }
+    }
+
     /// Writes C\*(σ) of the next simplex σ, by decreasing dimension, then increasing id.
     #[inline]
     pub(crate) fn push(&mut self, list: &[I]) {
         match list {
-            [top] if self.next < self.flaggable && top.to_usize() >= self.top_start => {
-                let number = self.pointers.len();
-                self.flags[number / 8] |= 1 << (number % 8);
-                self.pointers.push(top.to_usize());
-            }
+            [top] if self.next < self.flaggable && top.to_usize() >= self.top_start => self.push_flagged(*top),
             _ => {
-                self.pointers.push(self.lists.len());
                 // Cheaper than a call to copy a few.
                 self.lists.extend(list.iter().copied().chain([I::STOP]));
+                self.next += 1;
             }
         }
+    }
+
+    #[inline]
+    fn push_flagged(&mut self, top: I) {
+        let number = self.next - self.range.start;
+        self.flags[number / 8] |= 1 << (number % 8);
+        self.tops.push(top);
         self.next += 1;
     }
 
@@ -113,22 +122,18 @@ impl<I: Index> Part<I> {
     /// dimension, with every id replaced by its entry in `new_ids`. Cheaper than one [`push`](Self::push) for each, as
     /// nothing is looked at but the flags.
     pub(crate) fn push_renumbered(&mut self, before: &SigArrays<I>, range: Range<usize>, new_ids: &[I]) {
-        let base = self.lists.len();
         // Where the lists of the range start in `before`, and where the last of them does.
         let mut lists = None;
-        let start = self.pointers.len();
-        for (number, (id, pointer)) in (start..).zip(range.clone().zip(&before.pointers[range])) {
+        for (id, pointer) in range.clone().zip(&before.pointers[range]) {
             let pointer = pointer.to_usize();
             if before.flags[id / 8] >> (id % 8) & 1 == 1 {
-                self.flags[number / 8] |= 1 << (number % 8);
-                self.pointers.push(new_ids[pointer].to_usize());
+                self.push_flagged(new_ids[pointer]);
             } else {
                 let (first, _) = lists.unwrap_or((pointer, pointer));
                 lists = Some((first, pointer));
-                self.pointers.push(base + pointer - first);
+                self.next += 1;
             }
         }
-        self.next += self.pointers.len() - start;
         let Some((first, last)) = lists else { return };
         let len = before.lists[last..].iter().position(|&entry| entry == I::STOP).map_or(0, |len| len + 1);
         let entries = before.lists[first..last + len].iter();
@@ -137,12 +142,22 @@ impl<I: Index> Part<I> {
 
     /// Copies the part to where it belongs, if the lists before it take `start` entries.
     fn copy_to<J: Index>(&self, start: usize, pointers: &mut [J], lists: &mut [J]) {
-        for (number, (pointer, &value)) in pointers.iter_mut().zip(&self.pointers).enumerate() {
-            let is_flagged = self.flags[number / 8] >> (number % 8) & 1 == 1;
-            *pointer = index(if is_flagged { value } else { start + value });
-        }
-        for (entry, &top) in lists.iter_mut().zip(&self.lists) {
-            *entry = if top == I::STOP { J::STOP } else { index(top.to_usize()) };
+        let mut tops = self.tops.iter();
+        let mut place = 0;
+        for (number, pointer) in pointers.iter_mut().enumerate() {
+            if self.flags[number / 8] >> (number % 8) & 1 == 1 {
+                *pointer = tops.next().map_or(J::STOP, |top| index(top.to_usize()));
+                continue;
+            }
+            *pointer = index(start + place);
+            for (entry, &top) in lists[place..].iter_mut().zip(&self.lists[place..]) {
+                place += 1;
+                if top == I::STOP {
+                    *entry = J::STOP;
+                    break;
+                }
+                *entry = index(top.to_usize());
+            }
         }
     }
 }
@@ -154,7 +169,8 @@ fn concatenate<I: Index, J: Index>(
     cofacets: Cofacets<J>,
 ) -> SigArrays<J> {
     let count = arrays.first.last().copied().unwrap_or(0);
-    arrays.flags = parts.iter().flat_map(|part| part.flags.iter().copied()).collect();
+    arrays.flags = Vec::with_capacity(count.div_ceil(8));
+    parts.iter().for_each(|part| arrays.flags.extend_from_slice(&part.flags));
     arrays.flags.resize(count.div_ceil(8), 0);
     let before: usize = parts.iter().map(|part| part.lists.len()).sum();
     arrays.pointers = vec![J::ZERO; count];
@@ -169,7 +185,7 @@ fn concatenate<I: Index, J: Index>(
     let mut start = 0;
     let mut jobs = Vec::with_capacity(parts.len());
     for part in parts {
-        let pointers = pointers.split_off_mut(..part.pointers.len()).unwrap_or_default();
+        let pointers = pointers.split_off_mut(..part.range.len()).unwrap_or_default();
         let lists = lists.split_off_mut(..part.lists.len()).unwrap_or_default();
         start += lists.len();
         jobs.push((part, start - lists.len(), pointers, lists));
@@ -196,14 +212,7 @@ mod tests {
             pack(arrays, |range, part| range.for_each(|_| part.push(&[7])))
         };
         let Arrays::Narrow(narrow) = with(40_000) else { panic!("a short list") };
-        let parts = vec![Part {
-            next: 40_000,
-            flaggable: 0,
-            top_start: 40_000,
-            pointers: (0..40_000).map(|id| 2 * id).collect(),
-            lists: [7, u16::STOP].repeat(40_000),
-            flags: vec![0; 5_000],
-        }];
+        let parts = vec![Part { lists: [7, u16::STOP].repeat(40_000), ..Part::new(0..40_000, 0, 40_000) }];
         let arrays = SigArrays::<u32> { first: vec![0, 40_000], num_simplices: 40_001, ..SigArrays::default() };
         assert_eq!(concatenate(arrays, parts, Cofacets::default()), narrow);
     }

@@ -84,8 +84,13 @@ impl Counts {
 pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec<Vec<bool>> {
     let mut tops = vec![Vec::new(); arrays.first.len()];
     for (dim, marks) in listed.iter().enumerate().filter(|(_, marks)| !marks.is_empty()) {
+        let facets = arrays.facets(dim + 1);
+        if facets.is_empty() {
+            tops[dim] = vec![true; marks.len()];
+            continue;
+        }
         let has_coface: Vec<AtomicBool> = marks.par_iter().map(|_| AtomicBool::new(false)).collect();
-        arrays.facets(dim + 1).par_chunks(CHUNK).for_each(|facets| {
+        facets.par_chunks(CHUNK).for_each(|facets| {
             facets.iter().for_each(|facet| mark(&has_coface[facet.to_usize() - arrays.first[dim]]));
         });
         tops[dim] = has_coface.into_par_iter().map(|mark| !mark.into_inner()).collect();
@@ -95,19 +100,77 @@ pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec
 
 /// The parity bits of the top simplices in id order, and the counts for the report.
 pub(super) fn tally(listed: &[Vec<u8>], is_top: &[Vec<bool>]) -> (Vec<u8>, Counts) {
-    let mut parity = Vec::new();
-    let mut num_tops = 0;
+    let mut parity = Bits::default();
     let mut counts = Counts { top_simplices: vec![0; is_top.len()], ..Counts::default() };
     for (dim, (marks, is_top)) in listed.iter().zip(is_top).enumerate() {
-        counts.add(dim, marks, is_top, |is_odd| {
-            if num_tops % 8 == 0 {
-                parity.push(0);
-            }
-            if let Some(byte) = parity.last_mut() {
-                *byte |= u8::from(is_odd) << (num_tops % 8);
-            }
-            num_tops += 1;
+        let chunks = marks.par_chunks(CHUNK).zip(is_top.par_chunks(CHUNK)).map(|(marks, is_top)| {
+            let (mut parity, mut counts) =
+                (Bits::default(), Counts { top_simplices: vec![0; dim + 1], ..Counts::default() });
+            counts.add(dim, marks, is_top, |is_odd| parity.push(is_odd));
+            (parity, counts)
         });
+        for (bits, of_chunk) in chunks.collect::<Vec<_>>() {
+            parity.append(&bits);
+            counts.distinct_listed += of_chunk.distinct_listed;
+            counts.non_maximal += of_chunk.non_maximal;
+            counts.conflicting += of_chunk.conflicting;
+            counts.top_simplices[dim] += of_chunk.top_simplices[dim];
+        }
     }
-    (parity, counts)
+    (parity.bytes, counts)
+}
+
+/// Bits in bytes, least significant first.
+#[derive(Default)]
+struct Bits {
+    bytes: Vec<u8>,
+    len: usize,
+}
+
+impl Bits {
+    #[inline]
+    fn push(&mut self, bit: bool) {
+        if self.len.is_multiple_of(8) {
+            self.bytes.push(0);
+        }
+        if let Some(byte) = self.bytes.last_mut() {
+            *byte |= u8::from(bit) << (self.len % 8);
+        }
+        self.len += 1;
+    }
+
+    fn append(&mut self, others: &Self) {
+        let shift = self.len % 8;
+        for &byte in &others.bytes {
+            if let Some(last) = self.bytes.last_mut().filter(|_| shift > 0) {
+                *last |= byte << shift;
+            }
+            self.bytes.push(if shift > 0 { byte >> (8 - shift) } else { byte });
+        }
+        self.len += others.len;
+        self.bytes.truncate(self.len.div_ceil(8));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn bits_appended_are_bits_pushed(runs in prop::collection::vec(prop::collection::vec(any::<bool>(), 0..40), 0..8)) {
+            let (mut appended, mut pushed) = (Bits::default(), Bits::default());
+            for run in runs {
+                let mut bits = Bits::default();
+                for bit in run {
+                    bits.push(bit);
+                    pushed.push(bit);
+                }
+                appended.append(&bits);
+            }
+            prop_assert_eq!((appended.bytes, appended.len), (pushed.bytes, pushed.len));
+        }
+    }
 }
