@@ -173,7 +173,9 @@ fn concatenate<I: Index, J: Index>(
     parts.iter().for_each(|part| arrays.flags.extend_from_slice(&part.flags));
     arrays.flags.resize(count.div_ceil(8), 0);
     let before: usize = parts.iter().map(|part| part.lists.len()).sum();
-    arrays.pointers = vec![J::ZERO; count];
+    arrays.pointers = cofacets.pointers;
+    // Nothing if there are no cofacets.
+    arrays.pointers.resize(count, J::ZERO);
     arrays.lists = cofacets.lists;
     if before > 0 {
         // Of most meshes the lists are nearly all cofacets, so moving them up is cheap against a copy of all.
@@ -191,12 +193,11 @@ fn concatenate<I: Index, J: Index>(
         jobs.push((part, start - lists.len(), pointers, lists));
     }
     jobs.into_par_iter().for_each(|(part, start, pointers, lists)| part.copy_to(start, pointers, lists));
-    let to = pointers.par_chunks_mut(TASK).zip(cofacets.pointers.par_chunks(TASK));
-    to.for_each(|(pointers, cofacets)| {
-        for (pointer, offset) in pointers.iter_mut().zip(cofacets) {
-            *pointer = index(before + offset.to_usize());
-        }
-    });
+    if before > 0 {
+        pointers.par_chunks_mut(TASK).for_each(|pointers| {
+            pointers.iter_mut().for_each(|pointer| *pointer = index(before + pointer.to_usize()));
+        });
+    }
     arrays
 }
 

@@ -93,7 +93,8 @@ pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec
         facets.par_chunks(CHUNK).for_each(|facets| {
             facets.iter().for_each(|facet| mark(&has_coface[facet.to_usize() - arrays.first[dim]]));
         });
-        tops[dim] = has_coface.into_par_iter().map(|mark| !mark.into_inner()).collect();
+        // In place: faster on one thread than to new memory on all.
+        tops[dim] = has_coface.into_iter().map(|mark| !mark.into_inner()).collect();
     }
     tops
 }

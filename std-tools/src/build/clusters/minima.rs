@@ -27,10 +27,10 @@ use crate::build::{SigArrays, index};
 const CHUNK: usize = 1 << 16;
 
 /// The relations, as found.
-pub(super) struct Minima<I> {
+pub(super) struct Minima<I: Cell> {
     first: Vec<usize>,
     /// The least local minimum of the largest dimension at each simplex below dimension d − 1; the stop code if none.
-    representatives: Vec<I>,
+    representatives: Vec<I::Shared>,
     /// What else is in the list of a simplex, by simplex.
     others: Vec<Minimum<I>>,
     /// The top simplices of each dimension below d, from 1, by facet.
@@ -93,7 +93,7 @@ pub(super) fn find<I: Cell>(
         tops.next[dim - 1] = tops.all_next(dim, &is_top[dim]);
     }
     tops.join(&mut minima.others);
-    minima.representatives = representatives.into_par_iter().map(I::into_inner).collect();
+    minima.representatives = representatives;
     (minima, cofacets)
 }
 
@@ -136,7 +136,7 @@ impl<I: Cell> Finder<'_, I> {
     }
 }
 
-impl<I: Index> Minima<I> {
+impl<I: Cell> Minima<I> {
     /// Writes the lists of a range of simplices below dimension d − 1.
     pub(super) fn write(&self, ids: Range<usize>, part: &mut Part<I>) {
         let start = self.others.partition_point(|other| other.face.to_usize() < ids.start);
@@ -146,7 +146,7 @@ impl<I: Index> Minima<I> {
             let ids = ids.start.max(range[0])..ids.end.min(range[1]);
             let mut pairs = cofacets.pairs_from(ids.start.saturating_sub(range[0])).peekable();
             for id in ids {
-                let representative = self.representatives[id];
+                let representative = I::load(&self.representatives[id]);
                 let is_alone = others.peek().is_none_or(|other| other.face.to_usize() != id)
                     && pairs.peek().is_none_or(|&(facet, _)| facet != id - range[0]);
                 if is_alone && representative != I::STOP {

@@ -26,8 +26,8 @@ pub(super) fn task_size<I: Index>(arrays: &SigArrays<I>, dim: Dim) -> usize {
 pub(super) struct Columns<'a, I, W> {
     pub(super) dim: Dim,
     rows: &'a [I],
-    first_facet: usize,
-    first_top: usize,
+    pub(super) first_facet: usize,
+    pub(super) first_top: usize,
     /// Those in a range of numbers.
     pub(super) wanted: W,
     pub(super) tasks: Vec<Task>,
@@ -103,7 +103,7 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
         self.tasks.par_iter().map(outbox).collect()
     }
 
-    /// Writes the lists of a task, and where each starts if the first starts at `offset`; the pointers are 0 before. Calls
+    /// Writes the lists of a task, and where each starts if the first starts at `offset`. Calls
     /// `visit` with each simplex of which nothing was sent, and what it shares.
     pub(super) fn transpose(
         &self,
@@ -118,7 +118,8 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
         let sent = || {
             inbox.iter().copied().flatten().map(|(facet, top)| (facet.to_usize() - task.facets.start, top.to_usize()))
         };
-        // Counts at first.
+        // Counts at first. That new memory is 0 is no use: to be read before it is written costs a page twice.
+        pointers.fill(I::ZERO);
         for (facet, _) in sent() {
             pointers[facet] = index(pointers[facet].to_usize() + 1);
         }

@@ -24,8 +24,10 @@ const PAGE_BITS: u32 = 6;
 
 /// The simplices of dimension d among the cofacets of each (d − 1)-simplex.
 pub(super) struct Cofacets<I> {
-    /// Where the list of each starts.
+    /// Where the list of each starts, by id; nothing of those of lower dimensions.
     pub(super) pointers: Vec<I>,
+    /// The first (d − 1)-simplex.
+    pub(super) first: usize,
     /// The lists, increasing, each ended by the stop code.
     pub(super) lists: Vec<I>,
 }
@@ -33,7 +35,7 @@ pub(super) struct Cofacets<I> {
 /// Of no simplices.
 impl<I> Default for Cofacets<I> {
     fn default() -> Self {
-        Self { pointers: Vec::new(), lists: Vec::new() }
+        Self { pointers: Vec::new(), first: 0, lists: Vec::new() }
     }
 }
 
@@ -41,13 +43,13 @@ impl<I: Index> Cofacets<I> {
     /// The cofacets of simplex number `facet` of its dimension.
     #[inline]
     pub(super) fn of(&self, facet: usize) -> &[I] {
-        let list = &self.lists[self.pointers[facet].to_usize()..];
+        let list = &self.lists[self.pointers[self.first + facet].to_usize()..];
         &list[..list.iter().position(|&entry| entry == I::STOP).unwrap_or(0)]
     }
 
     /// The same with wider indices.
     pub(super) fn widen(self) -> Cofacets<u64> {
-        Cofacets { pointers: widen(self.pointers), lists: widen(self.lists) }
+        Cofacets { pointers: widen(self.pointers), first: self.first, lists: widen(self.lists) }
     }
 }
 
@@ -138,8 +140,12 @@ fn find_all<I: Index, V: Send>(
             task.facets.len() + task.tops.len() * (columns.dim + 1) + received - sent
         })
         .collect();
-    let mut all = Cofacets { pointers: vec![I::ZERO; columns.num_facets()], lists: vec![I::ZERO; lens.iter().sum()] };
-    let (mut pointers, mut lists, mut offset) = (all.pointers.as_mut_slice(), all.lists.as_mut_slice(), 0);
+    let mut all = Cofacets {
+        pointers: vec![I::ZERO; columns.first_top],
+        first: columns.first_facet,
+        lists: vec![I::ZERO; lens.iter().sum()],
+    };
+    let (mut pointers, mut lists, mut offset) = (&mut all.pointers[all.first..], all.lists.as_mut_slice(), 0);
     let mut jobs = Vec::with_capacity(lens.len());
     for ((task, inbox), len) in columns.tasks.iter().zip(&inboxes).zip(lens) {
         let pointers = pointers.split_off_mut(..task.facets.len()).unwrap_or_default();
@@ -183,12 +189,12 @@ fn find_wanted<I: Index, V: Send, R: Iterator<Item = usize>>(
         let most = (columns.wanted)(task.tops.clone()).count() * (columns.dim + 1)
             + inbox.iter().map(|pairs| pairs.len()).sum::<usize>();
         if most > 0 {
-            pointers.clear();
-            pointers.resize(task.facets.len(), I::ZERO);
+            pointers.resize(task.facets.len().max(pointers.len()), I::ZERO);
+            let pointers = &mut pointers[..task.facets.len()];
             lists.clear();
             lists.resize(task.facets.len() + most, I::STOP);
             columns.transpose(task, inbox, pointers, lists, 0, |top, shared| visit(&mut visitor, top, shared));
-            for (facet, pointer) in task.facets.clone().zip(&*pointers) {
+            for (facet, pointer) in task.facets.clone().zip(pointers) {
                 let list = lists[pointer.to_usize()..].iter().take_while(|&&top| top != I::STOP);
                 pairs.extend(list.map(|&top| (index(facet), top)));
             }
