@@ -96,14 +96,18 @@ impl<I: Index, L: Index> Families<'_, I, L> {
         for (i, facet) in facets.iter().enumerate() {
             // All labels are among the candidates' labels, and both increase.
             let facet = facet.to_usize();
-            let mut candidates = self.children(facet..facet + 1);
+            let candidates = self.children(facet..facet + 1);
+            let mut child = candidates.start;
+            let mut candidates = &self.last_vertices[candidates];
             for (number, (label, row)) in labels.iter().zip(rows.chunks_exact_mut(width)).enumerate() {
-                candidates.start += seek(&self.last_vertices[candidates.clone()], label);
-                if candidates.is_empty() || self.last_vertices[candidates.start] != *label {
+                let skipped = seek(candidates, label);
+                candidates = &candidates[skipped..];
+                if candidates.first() != Some(label) {
                     return Err(siblings.start + number);
                 }
-                row[i] = index(candidates.start);
-                found(candidates.start);
+                child += skipped;
+                row[i] = index(child);
+                found(child);
             }
         }
         Ok(())
@@ -123,10 +127,16 @@ pub(super) fn mark(mark: &AtomicBool) {
     }
 }
 
-/// The position of the first entry of increasing `sorted` that is not less than `value`, by doubling steps: usually it is
-/// near the start.
+/// The position of the first entry of increasing `sorted` that is not less than `value`. Usually it is near the start: a
+/// few entries are looked at in turn, then steps are doubled.
 #[inline]
 pub(crate) fn seek<T: Ord>(sorted: &[T], value: &T) -> usize {
+    const NEAR: usize = 4;
+    let near = sorted.iter().take(NEAR).take_while(|&candidate| candidate < value).count();
+    if near < NEAR { near } else { near + seek_far(&sorted[NEAR..], value) }
+}
+
+fn seek_far<T: Ord>(sorted: &[T], value: &T) -> usize {
     let mut step = 1;
     let mut start = 0;
     while sorted.get(start + step - 1).is_some_and(|candidate| candidate < value) {

@@ -36,20 +36,23 @@ pub(super) fn find(
     let arch = pulp::Arch::new();
     let buckets: Result<Vec<_>, _> = (0..words.num_buckets())
         .into_par_iter()
-        .map_init(Finder::new, |finder, number| {
-            let vertices = words.vertices(number);
-            words.gather(number, &mut finder.flat);
-            let mut reservation = limit.reservation();
-            let count = vertices.len();
-            // With the instructions for bits that the processor has.
-            let bucket = arch.dispatch(
-                #[inline(always)]
-                || finder.find(vertices, &is_unused, &mut reservation),
-            )?;
-            reservation.settle()?;
-            stage.add(count);
-            Ok(bucket)
-        })
+        .map_init(
+            || (Finder::new(), Vec::new()),
+            |(finder, room), number| {
+                let vertices = words.vertices(number);
+                let flat = words.gather(number, room);
+                let mut reservation = limit.reservation();
+                let count = vertices.len();
+                // With the instructions for bits that the processor has.
+                let bucket = arch.dispatch(
+                    #[inline(always)]
+                    || finder.find(flat, vertices, &is_unused, &mut reservation),
+                )?;
+                reservation.settle()?;
+                stage.add(count);
+                Ok(bucket)
+            },
+        )
         .collect();
     Ok(Chunks { buckets: buckets? })
 }

@@ -79,16 +79,18 @@ impl Words {
         narrow(bucket << self.bits)..narrow(self.num_vertices.min((bucket + 1) << self.bits))
     }
 
-    /// Fills `flat` with the records of a bucket.
-    pub(super) fn gather(&self, bucket: usize, flat: &mut Vec<u32>) {
-        flat.clear();
-        for part in &self.parts {
-            if let Some(&[start, end]) =
-                bucket.checked_sub(part.first).and_then(|place| part.starts.get(place..place + 2))
-            {
-                flat.extend_from_slice(&part.flat[start as usize..end as usize]);
-            }
-        }
+    /// The records of a bucket; where they are in several parts, in `room`.
+    pub(super) fn gather<'a>(&'a self, bucket: usize, room: &'a mut Vec<u32>) -> &'a [u32] {
+        let mut runs = self.parts.iter().filter_map(|part| {
+            let place = bucket.checked_sub(part.first)?;
+            let &[start, end] = part.starts.get(place..place + 2)? else { return None };
+            Some(&part.flat[start as usize..end as usize]).filter(|run| !run.is_empty())
+        });
+        let first = runs.next().unwrap_or(&[]);
+        let Some(second) = runs.next() else { return first };
+        room.clear();
+        [first, second].into_iter().chain(runs).for_each(|run| room.extend_from_slice(run));
+        room
     }
 }
 

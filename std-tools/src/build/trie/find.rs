@@ -28,8 +28,6 @@ struct Tail {
 
 /// Working memory, reused from bucket to bucket.
 pub(in crate::build) struct Finder {
-    /// The records of the bucket.
-    pub(in crate::build) flat: Vec<u32>,
     starts: Vec<u32>,
     tails: Vec<Tail>,
     /// A hash table of the neighbours of one vertex, empty between vertices: which vertex is in a slot, and its bit.
@@ -52,7 +50,6 @@ pub(in crate::build) struct Finder {
 impl Finder {
     pub(in crate::build) fn new() -> Self {
         Self {
-            flat: Vec::new(),
             starts: Vec::new(),
             tails: Vec::new(),
             names: [ABSENT; 1 << SLOT_BITS],
@@ -67,18 +64,19 @@ impl Finder {
         }
     }
 
-    /// Finds the faces whose least vertex is one of `vertices`, from the records in `flat`.
+    /// Finds the faces whose least vertex is one of `vertices`, from the records `flat`.
     ///
     /// # Errors
     /// [`BuildError::TooLarge`].
     #[inline(always)]
     pub(in crate::build) fn find(
         &mut self,
+        flat: &[u32],
         vertices: std::ops::Range<u32>,
         is_unused: impl Fn(u32) -> bool,
         reservation: &mut Reservation<'_>,
     ) -> Result<Bucket, BuildError> {
-        if u32::try_from(self.flat.len()).is_err() {
+        if u32::try_from(flat.len()).is_err() {
             return Err(reservation.too_large());
         }
         let mut bucket = Bucket::default();
@@ -88,7 +86,7 @@ impl Finder {
         for vertex in vertices.clone().filter(|&vertex| is_unused(vertex)) {
             bucket.mark(0, (vertex - vertices.start) as usize, UNUSED);
         }
-        self.deal(&vertices, &mut bucket);
+        self.deal(flat, &vertices, &mut bucket);
         // Buckets are alike.
         bucket.neighbours.reserve(self.sizes.0);
         for &(narrow, other) in &self.sizes.1 {
@@ -99,8 +97,8 @@ impl Finder {
         for number in 0..vertices.len() {
             let tails = self.starts[number] as usize..self.starts[number + 1] as usize;
             let num_levels = tails.clone().map(|tail| self.tails[tail].len).max().unwrap_or(0);
-            if !self.name(tails.clone()) {
-                self.add_wide(tails, &mut bucket, reservation)?;
+            if !self.name(flat, tails.clone()) {
+                self.add_wide(flat, tails, &mut bucket, reservation)?;
             } else if self.neighbours.len() <= u16::BITS as usize {
                 self.grow::<u16>(&mut bucket, num_levels, reservation)?;
             } else {
@@ -118,8 +116,8 @@ impl Finder {
 
     /// Sorts the tails in the records by their first vertices.
     #[inline(always)]
-    fn deal(&mut self, vertices: &std::ops::Range<u32>, bucket: &mut Bucket) {
-        let Self { flat, starts, tails, .. } = self;
+    fn deal(&mut self, flat: &[u32], vertices: &std::ops::Range<u32>, bucket: &mut Bucket) {
+        let Self { starts, tails, .. } = self;
         // Shifted by one, so that filling in moves each start to where it belongs.
         starts.clear();
         starts.resize(vertices.len() + 2, 0);
@@ -133,8 +131,9 @@ impl Finder {
         for number in 2..starts.len() {
             starts[number] += starts[number - 1];
         }
-        tails.clear();
-        tails.resize_with(starts[vertices.len() + 1] as usize, || Tail { at: 0, len: 0, mark: 0 });
+        // What is left of the bucket before is overwritten, or beyond the last start.
+        let num_tails = starts[vertices.len() + 1] as usize;
+        tails.resize_with(num_tails.max(tails.len()), || Tail { at: 0, len: 0, mark: 0 });
         let mut end = 0;
         for (mut mark, word) in records(flat) {
             if let [vertex] = word {
@@ -156,8 +155,8 @@ impl Finder {
     /// Finds the neighbours of a vertex with the given tails, and makes its tails visits; false if there are too many.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "slots are numbered by bytes")]
-    fn name(&mut self, tails: std::ops::Range<usize>) -> bool {
-        let Self { flat, tails: all_tails, names, bits, slots, neighbours, visits, .. } = self;
+    fn name(&mut self, flat: &[u32], tails: std::ops::Range<usize>) -> bool {
+        let Self { tails: all_tails, names, bits, slots, neighbours, visits, .. } = self;
         let tails = &all_tails[tails];
         slots.clear();
         neighbours.clear();
@@ -278,12 +277,13 @@ impl Finder {
     /// Adds a vertex that has too many neighbours for masks.
     fn add_wide(
         &mut self,
+        flat: &[u32],
         tails: std::ops::Range<usize>,
         bucket: &mut Bucket,
         reservation: &mut Reservation<'_>,
     ) -> Result<(), BuildError> {
         for tail in &self.tails[tails] {
-            self.local.push_tail(&self.flat[tail.at as usize..][..tail.len as usize], tail.mark);
+            self.local.push_tail(&flat[tail.at as usize..][..tail.len as usize], tail.mark);
         }
         let mut levels = Vec::new();
         self.local.add_vertex(&mut levels, reservation)?;
