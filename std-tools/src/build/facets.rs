@@ -77,7 +77,7 @@ impl<I: Index, L: Index> Families<'_, I, L> {
                 if !siblings.is_empty() {
                     let rows = rows.split_off_mut(..siblings.len() * (dim + 1)).unwrap_or_default();
                     let facets = &self.parent_rows[(parent - self.parents.start) * dim..][..count];
-                    self.fill_family(siblings, facets, rows, found)?;
+                    self.fill_family(siblings, dim, facets, rows, found)?;
                 }
             }
             Ok(())
@@ -87,19 +87,19 @@ impl<I: Index, L: Index> Families<'_, I, L> {
     fn fill_family(
         &self,
         siblings: Range<usize>,
+        dim: Dim,
         facets: &[I],
         rows: &mut [I],
         found: &impl Fn(usize),
     ) -> Result<(), usize> {
         let labels = &self.last_vertices[siblings.clone()];
-        let width = rows.len() / labels.len();
         for (i, facet) in facets.iter().enumerate() {
             // All labels are among the candidates' labels, and both increase.
             let facet = facet.to_usize();
             let candidates = self.children(facet..facet + 1);
             let mut child = candidates.start;
             let mut candidates = &self.last_vertices[candidates];
-            for (number, (label, row)) in labels.iter().zip(rows.chunks_exact_mut(width)).enumerate() {
+            for (number, (label, row)) in labels.iter().zip(rows.chunks_exact_mut(dim + 1)).enumerate() {
                 let skipped = seek(candidates, label);
                 candidates = &candidates[skipped..];
                 if candidates.first() != Some(label) {

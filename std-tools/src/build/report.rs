@@ -90,8 +90,9 @@ pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec
             continue;
         }
         let has_coface: Vec<AtomicBool> = marks.par_iter().map(|_| AtomicBool::new(false)).collect();
+        let first = arrays.first[dim];
         facets.par_chunks(CHUNK).for_each(|facets| {
-            facets.iter().for_each(|facet| mark(&has_coface[facet.to_usize() - arrays.first[dim]]));
+            facets.iter().for_each(|facet| mark(&has_coface[facet.to_usize() - first]));
         });
         // In place: faster on one thread than to new memory on all.
         tops[dim] = has_coface.into_iter().map(|mark| !mark.into_inner()).collect();

@@ -104,7 +104,8 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
     }
 
     /// Writes the lists of a task, and where each starts if the first starts at `offset`. Calls
-    /// `visit` with each simplex of which nothing was sent, and what it shares.
+    /// `visit` with each simplex of which nothing was sent, and what it shares; the others are given back, with what they
+    /// share but for the first facet.
     pub(super) fn transpose(
         &self,
         task: &Task,
@@ -113,7 +114,7 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
         lists: &mut [I],
         offset: usize,
         mut visit: impl FnMut(usize, u32),
-    ) {
+    ) -> Vec<(I, u32)> {
         let own = |facet: I| self.number(facet).wrapping_sub(task.facets.start);
         let sent = || {
             inbox.iter().copied().flatten().map(|(facet, top)| (facet.to_usize() - task.facets.start, top.to_usize()))
@@ -148,6 +149,7 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
         for (facet, top) in sent() {
             enter(&mut pointers[facet], top);
         }
+        let mut others = Vec::new();
         for top in (self.wanted)(task.tops.clone()) {
             let (mut shared, mut is_own) = (0, true);
             for (i, &facet) in self.row(top).iter().enumerate() {
@@ -158,6 +160,8 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
             }
             if is_own {
                 visit(top, shared);
+            } else {
+                others.push((index(top), shared));
             }
         }
         let mut start = offset;
@@ -166,27 +170,29 @@ impl<'a, I: Index, W: Fn(Range<usize>) -> R + Sync, R: Iterator<Item = usize>> C
             *pointer = index(start);
             start = end + 1;
         }
+        others
     }
 
-    /// Calls `visit` with the simplices of which something was sent, and what they share.
-    pub(super) fn visit_sent<'b, V: Send>(
+    /// Calls `visit` with the simplices that [`transpose`](Self::transpose) has given back, and what they share.
+    pub(super) fn visit_others<'b, V: Send>(
         &self,
-        outboxes: &'b [Outbox<I>],
+        others: &[Vec<(I, u32)>],
         cofacets: impl Fn(usize) -> &'b [I] + Sync,
         new_visitor: &(impl Fn() -> V + Sync),
         visit: &(impl Fn(&mut V, usize, u32) + Sync),
-    ) -> Vec<V> {
-        let visit_all = |outbox: &Outbox<I>| {
+    ) -> Vec<V>
+    where
+        I: 'b,
+    {
+        let visit_all = |others: &Vec<(I, u32)>| {
             let mut visitor = new_visitor();
-            for &(_, top) in outbox.values().flatten() {
-                let id = index(self.first_top + top.to_usize());
-                let shared = self.row(top.to_usize()).iter().enumerate().fold(0, |shared, (i, &facet)| {
-                    shared | u32::from(cofacets(self.number(facet)).first() != Some(&id)) << i
-                });
-                visit(&mut visitor, top.to_usize(), shared);
+            for &(top, shared) in others {
+                let (top, facet) = (top.to_usize(), self.rows[top.to_usize() * (self.dim + 1)]);
+                let is_first = cofacets(self.number(facet)).first() == Some(&index(self.first_top + top));
+                visit(&mut visitor, top, shared | u32::from(!is_first));
             }
             visitor
         };
-        outboxes.par_iter().map(visit_all).collect()
+        others.par_iter().map(visit_all).collect()
     }
 }

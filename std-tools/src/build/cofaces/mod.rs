@@ -155,11 +155,12 @@ fn find_all<I: Index, V: Send>(
     }
     let transposed = jobs.into_par_iter().map(|(task, inbox, pointers, lists, offset)| {
         let mut visitor = new_visitor();
-        columns.transpose(task, inbox, pointers, lists, offset, |top, shared| visit(&mut visitor, top, shared));
-        visitor
+        let tell = |top, shared| visit(&mut visitor, top, shared);
+        let others = columns.transpose(task, inbox, pointers, lists, offset, tell);
+        (visitor, others)
     });
-    let mut visitors: Vec<V> = transposed.collect();
-    visitors.par_extend(columns.visit_sent(&outboxes, |facet| all.of(facet), &new_visitor, &visit));
+    let (mut visitors, others): (Vec<V>, Vec<_>) = transposed.unzip();
+    visitors.extend(columns.visit_others(&others, |facet| all.of(facet), &new_visitor, &visit));
     (all, visitors)
 }
 
@@ -185,7 +186,7 @@ fn find_wanted<I: Index, V: Send, R: Iterator<Item = usize>>(
     let inboxes = inboxes(&columns.tasks, &outboxes);
     let room = || (Vec::new(), Vec::new());
     let transposed = columns.tasks.par_iter().zip(&inboxes).map_init(room, |(pointers, lists), (task, inbox)| {
-        let (mut visitor, mut pairs) = (new_visitor(), Vec::new());
+        let (mut visitor, mut others, mut pairs) = (new_visitor(), Vec::new(), Vec::new());
         let most = (columns.wanted)(task.tops.clone()).count() * (columns.dim + 1)
             + inbox.iter().map(|pairs| pairs.len()).sum::<usize>();
         if most > 0 {
@@ -193,17 +194,19 @@ fn find_wanted<I: Index, V: Send, R: Iterator<Item = usize>>(
             let pointers = &mut pointers[..task.facets.len()];
             lists.clear();
             lists.resize(task.facets.len() + most, I::STOP);
-            columns.transpose(task, inbox, pointers, lists, 0, |top, shared| visit(&mut visitor, top, shared));
+            let tell = |top, shared| visit(&mut visitor, top, shared);
+            others = columns.transpose(task, inbox, pointers, lists, 0, tell);
             for (facet, pointer) in task.facets.clone().zip(pointers) {
                 let list = lists[pointer.to_usize()..].iter().take_while(|&&top| top != I::STOP);
                 pairs.extend(list.map(|&top| (index(facet), top)));
             }
         }
-        (pairs, visitor)
+        (pairs, (visitor, others))
     });
-    let (pairs, mut visitors): (Vec<_>, Vec<V>) = transposed.unzip();
+    let (pairs, told): (Vec<_>, Vec<_>) = transposed.unzip();
+    let (mut visitors, others): (Vec<V>, Vec<_>) = told.into_iter().unzip();
     let all = FewCofacets::new(&pairs, columns.num_facets());
-    visitors.par_extend(columns.visit_sent(&outboxes, |facet| all.of(facet), &new_visitor, &visit));
+    visitors.extend(columns.visit_others(&others, |facet| all.of(facet), &new_visitor, &visit));
     (all, visitors)
 }
 

@@ -250,7 +250,10 @@ impl Finder {
                         let node = child(node, letter);
                         let mask = &mut here[node as usize];
                         *mask = M::new(mask.bits() | rest);
-                        next_visits.push(Visit { rest, node, mark });
+                        // Of one letter more all is known but whether it is listed.
+                        if rest & (rest - 1) != 0 || mark != 0 {
+                            next_visits.push(Visit { rest, node, mark });
+                        }
                     } else if mark != 0 {
                         let marks = &mut listed[level];
                         if marks.len() < base + count {
