@@ -112,8 +112,10 @@ pub(crate) fn number_vertices(
         }
     }
     // The check of the simplices has seen that vertex numbers are 32-bit.
-    let mut inputs: Vec<u32> =
-        (0..).zip(used).filter_map(|(input, &used)| (used || keep_unused).then_some(input)).collect();
+    let mut inputs: Vec<u32> = (0..crate::build::narrow(used.len())).collect();
+    if !keep_unused {
+        inputs.retain(|&input| used[input as usize]);
+    }
     match labels {
         Labels::Numbered(_) => {}
         Labels::Integers(labels) => inputs.sort_unstable_by_key(|&input| labels[input as usize]),
