@@ -75,7 +75,7 @@ mod tests {
         let meter = Meter::new(None);
         let used = words::check(&soup.simplices, soup.labels.len()).unwrap();
         let order = number_vertices(&soup.labels, None, &soup.simplices, &used, true, VertexOrder::Input).unwrap();
-        let words = words::sort(soup.simplices.clone(), &order, bucket, &meter).unwrap();
+        let words = words::sort(soup.simplices.clone(), &order, bucket..bucket, &meter).unwrap();
         let limit = Limit::new(soup, &BuildOptions::default()).unwrap();
         let chunks = find(&words, |vertex| !used[vertex as usize], &limit, &meter).unwrap();
         assemble::assemble(chunks, &meter)

@@ -16,9 +16,10 @@ use crate::build::{BuildError, Meter, Phase, narrow};
 const CHUNK: Range<usize> = 1 << 16..1 << 25;
 /// Chunks of an input of any size, at most (but for very large ones).
 const MOST_CHUNKS: usize = 1 << 10;
-/// Tails in a bucket, about: what is known of it then fits a core's cache.
-pub(super) const BUCKET: usize = 1 << 13;
-/// Buckets at most.
+/// Tails in a bucket, about, at least and at most: what is known of it then fits a core's cache.
+pub(super) const BUCKET: Range<usize> = 1 << 13..1 << 15;
+/// Buckets, about, where these are not too small or too large; and at most.
+const BUCKETS: usize = 1 << 5;
 const MOST_BUCKETS: usize = 1 << 14;
 
 /// The listed simplices as words, by bucket. In each bucket is every *tail* whose first vertex is in it: what is left of
@@ -126,11 +127,11 @@ pub(super) fn check(simplices: &[Vec<u32>], count: usize) -> Result<Vec<bool>, B
     Ok(used.into_iter().map(AtomicBool::into_inner).collect())
 }
 
-/// Rewrites every listed simplex as its word, and deals the words out to buckets of about so many tails.
+/// Rewrites every listed simplex as its word, and deals the words out to buckets of so many tails, about.
 pub(super) fn sort(
     simplices: Vec<Vec<u32>>,
     order: &Order,
-    bucket: usize,
+    bucket: Range<usize>,
     meter: &Meter<'_>,
 ) -> Result<Words, BuildError> {
     let num_listed = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1)).sum();
@@ -138,7 +139,9 @@ pub(super) fn sort(
     let num_tails: usize = simplices.iter().enumerate().map(|(dim, flat)| flat.len() / (dim + 1) * dim).sum();
     let num_vertices = order.num_vertices();
     // Vertices count as tails: isolated ones are work too.
-    let size = (num_vertices as u128 * bucket as u128 / (num_tails + num_vertices).max(1) as u128).max(1);
+    let num_tails = num_tails + num_vertices;
+    let bucket = (num_tails / BUCKETS).clamp(bucket.start, bucket.end);
+    let size = (num_vertices as u128 * bucket as u128 / num_tails.max(1) as u128).max(1);
     let size = usize::try_from(size).unwrap_or(1).max(num_vertices / MOST_BUCKETS);
     let bits = size.next_power_of_two().trailing_zeros();
     let mut parts = Vec::new();
