@@ -3,7 +3,7 @@
 //!
 //! Below v stand the vertices of its tails, and below any node the vertices that follow it in some tail. Vertices are
 //! *letters* here, positions among the neighbours of v, so that the children of a node are a bit mask, a tail is one too,
-//! and the number of a child is a count of bits. The masks are found ([`Finder`]), and take an eighth of the arrays that are
+//! and the number of a child is a count of bits. The masks are found ([`Finder`]), and take a tenth of the arrays that are
 //! [written](Bucket::write) from them once it is known where. Vertices with more neighbours than a mask has bits are
 //! handled by [`super::local`].
 
