@@ -17,6 +17,7 @@ use crate::build::{SigArrays, index};
 const TASK: Range<usize> = 1 << 14..1 << 18;
 /// Tasks, about, where these are not too small or too large.
 const TASKS: usize = 1 << 5;
+
 /// Simplices of two dimensions that a task handles.
 pub(super) fn task_size<I: Index>(arrays: &SigArrays<I>, dim: Dim) -> usize {
     ((arrays.ids(dim - 1).len() + arrays.ids(dim).len()) / TASKS).clamp(TASK.start, TASK.end)
