@@ -394,15 +394,11 @@ fn build_up_to(mut soup: Soup, options: &BuildOptions<'_>, most_narrow: usize) -
         Arrays::Wide(arrays) => listed.by_id(arrays, &order, options),
     }?;
     let report = BuildReport {
-        listed: num_listed,
-        repeated: num_listed - counts.distinct_listed,
         differing,
-        non_maximal: counts.non_maximal,
-        conflicting: counts.conflicting,
         unused_kept: if keep_unused { order.num_unused } else { 0 },
         unused_dropped: if keep_unused || !declared { 0 } else { order.num_unused },
         first_unused: order.name_unused(&labels, declared),
-        top_simplices: counts.top_simplices,
+        ..counts.report(num_listed)
     };
     let (labels, coordinates) = order.permute(labels, coordinates);
     Ok(Built { arrays, labels, coordinates, parity: Some(parity), filtration: None, attributes, report })

@@ -63,6 +63,31 @@ pub(super) struct Counts {
 }
 
 impl Counts {
+    /// Of a complex of so many dimensions, nothing yet.
+    pub(super) fn new(dims: usize) -> Self {
+        Self { top_simplices: vec![0; dims], ..Self::default() }
+    }
+
+    /// Adds those of a part.
+    pub(super) fn merge(&mut self, part: &Self) {
+        self.distinct_listed += part.distinct_listed;
+        self.non_maximal += part.non_maximal;
+        self.conflicting += part.conflicting;
+        self.top_simplices.iter_mut().zip(&part.top_simplices).for_each(|(all, more)| *all += more);
+    }
+
+    /// What they say of so many listed simplices.
+    pub(super) fn report(self, listed: usize) -> BuildReport {
+        BuildReport {
+            listed,
+            repeated: listed - self.distinct_listed,
+            non_maximal: self.non_maximal,
+            conflicting: self.conflicting,
+            top_simplices: self.top_simplices,
+            ..BuildReport::default()
+        }
+    }
+
     /// Takes in simplices of one dimension, how they are listed and which of them are top, and calls `parity` with the
     /// orientation of each that is: whether it is odd.
     pub(super) fn add(&mut self, dim: Dim, marks: &[u8], is_top: &[bool], mut parity: impl FnMut(bool)) {
@@ -103,20 +128,16 @@ pub(super) fn is_top<I: Index>(arrays: &SigArrays<I>, listed: &[Vec<u8>]) -> Vec
 /// The parity bits of the top simplices in id order, and the counts for the report.
 pub(super) fn tally(listed: &[Vec<u8>], is_top: &[Vec<bool>]) -> (Vec<u8>, Counts) {
     let mut parity = Bits::default();
-    let mut counts = Counts { top_simplices: vec![0; is_top.len()], ..Counts::default() };
+    let mut counts = Counts::new(is_top.len());
     for (dim, (marks, is_top)) in listed.iter().zip(is_top).enumerate() {
         let chunks = marks.par_chunks(CHUNK).zip(is_top.par_chunks(CHUNK)).map(|(marks, is_top)| {
-            let (mut parity, mut counts) =
-                (Bits::default(), Counts { top_simplices: vec![0; dim + 1], ..Counts::default() });
+            let (mut parity, mut counts) = (Bits::default(), Counts::new(dim + 1));
             counts.add(dim, marks, is_top, |is_odd| parity.push(is_odd));
             (parity, counts)
         });
         for (bits, of_chunk) in chunks.collect::<Vec<_>>() {
             parity.append(&bits);
-            counts.distinct_listed += of_chunk.distinct_listed;
-            counts.non_maximal += of_chunk.non_maximal;
-            counts.conflicting += of_chunk.conflicting;
-            counts.top_simplices[dim] += of_chunk.top_simplices[dim];
+            counts.merge(&of_chunk);
         }
     }
     (parity.bytes, counts)

@@ -43,6 +43,7 @@ use std::sync::{Mutex, PoisonError};
 use sig_core::{Dim, IndexWidth, MAX_DIM};
 
 use super::order::{Order, number_vertices};
+use super::report::Counts;
 use super::{BuildError, BuildOptions, BuildReport, Meter, Phase, Unused, VertexOrder, words};
 use crate::soup::{Coordinates, Labels, Scalars, Soup};
 use crate::spool::{Spill, Spool};
@@ -50,7 +51,7 @@ use crate::store::{EncodeError, EncodeOptions};
 use count::Pieces;
 use kept::{Past, Record};
 use key::Fingerprint;
-use piece::{Counted, Piece};
+use piece::Piece;
 use whole::Whole;
 use write::Writer;
 
@@ -328,11 +329,13 @@ fn build(
     if let Some(limit) = options.max_simplices.filter(|&limit| whole.num_simplices as u64 > limit) {
         return Err(BuildError::TooLarge { at_least: whole.num_simplices as u64, limit }.into());
     }
+    let mut counts = Counts::new(whole.first.len());
+    counted.iter().for_each(|piece| counts.merge(&piece.report));
     let report = BuildReport {
         unused_kept: if keep_unused { num_unused } else { 0 },
         unused_dropped: if keep_unused || !declared { 0 } else { num_unused },
         first_unused,
-        ..report(listed, &counted, whole.first.len())
+        ..counts.report(listed)
     };
     let (output, width, file_bytes) = whole.begin(file, &labels, coordinates.as_ref(), encode)?;
     let stage = meter.stage(Phase::Write, labels.len());
@@ -355,18 +358,6 @@ fn build(
     })?;
     output.finish()?;
     Ok(Outcome { report, simplices: whole.counts(), width, file_bytes, pieces: ranges.len(), temporary_bytes })
-}
-
-/// What the pieces of a complex with `dims` dimensions tell of the `listed` simplices.
-fn report(listed: usize, pieces: &[Counted], dims: usize) -> BuildReport {
-    let mut report = BuildReport { listed, repeated: listed, top_simplices: vec![0; dims], ..BuildReport::default() };
-    for counts in pieces.iter().map(|piece| &piece.report) {
-        report.repeated -= counts.distinct_listed;
-        report.non_maximal += counts.non_maximal;
-        report.conflicting += counts.conflicting;
-        report.top_simplices.iter_mut().zip(&counts.top_simplices).for_each(|(all, more)| *all += more);
-    }
-    report
 }
 
 /// Checks the listed simplices, and takes their fingerprint; tells which of `count` vertices they use.

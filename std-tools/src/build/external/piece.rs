@@ -138,7 +138,7 @@ impl Piece {
 
     /// What the whole has to know of the piece before anything is written.
     pub(super) fn count(&self) -> Counted {
-        let mut report = Counts { top_simplices: vec![0; self.owned.len()], ..Counts::default() };
+        let mut report = Counts::new(self.owned.len());
         self.for_each_listed(|dim, marks, is_top| report.add(dim, marks, is_top, |_| {}));
         let below = &self.owned[..self.dim()];
         let flagged = |owned: &Range<usize>| owned.clone().filter(|&id| self.is_flagged(id)).count();

@@ -166,7 +166,7 @@ impl<'a> Writer<'a> {
 
     fn write_parity(&self) -> io::Result<()> {
         let mut written = Ok(());
-        let mut counts = Counts { top_simplices: vec![0; self.piece.owned.len()], ..Counts::default() };
+        let mut counts = Counts::new(self.piece.owned.len());
         self.piece.for_each_listed(|dim, marks, is_top| {
             let mut run = self.pen.bits(SectionKind::Parity, self.whole.tops[self.me][dim]);
             let mut result = Ok(());
